@@ -1,0 +1,1 @@
+"""Photo to discontinuity edges: an arrangement of segments that meet only at shared vertices."""

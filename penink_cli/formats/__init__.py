@@ -1,0 +1,1 @@
+"""Readers and writers: each module is one on-disk format, defined in README.md beside them."""

@@ -1,0 +1,101 @@
+"""The values that the rooms of the project hand to one another.
+
+One coordinate decision holds everywhere: x right, y down, the origin at the top-left
+*corner*. The pixel in row i, column j covers the unit square whose top-left corner is
+(j, i), and its sample sits at (j + ½, i + ½). Only modules that speak to something
+with another convention (scikit-image's integer centres, PostScript's y up) convert.
+
+Nothing here knows of files, options or algorithms.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+
+Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False)
+class GreyImage:
+    """Grey samples exactly as a PGM file stores them.
+
+    values: (h, w), uint8 where maxval ≤ 255, else uint16; 0 is black, maxval is paper white.
+    """
+
+    values: npt.NDArray[np.uint8] | npt.NDArray[np.uint16]
+    maxval: int = 255
+
+    @property
+    def tone(self) -> Floats:
+        """Ink coverage (h, w), 0 paper … 1 solid ink."""
+        return 1.0 - self.values / float(self.maxval)
+
+
+@dataclass(frozen=True, eq=False)
+class EdgeList:
+    """An arrangement of discontinuity edges, in pixels of the photo it was found in.
+
+    width, height: the image frame [0, width] × [0, height], whole photo pixels.
+    vertices: (n, 2) x, y.
+    edges: (m, 2) indices into vertices. Edges meet only at shared vertices.
+    strength: (m,) grey step across each edge, 0 … 1, or None where not known.
+
+    One edge list serves every resolution of its image: see `scaled`.
+    """
+
+    width: int
+    height: int
+    vertices: Floats = field(default_factory=lambda: np.zeros((0, 2)))
+    edges: Ints = field(default_factory=lambda: np.zeros((0, 2), np.int64))
+    strength: Floats | None = None
+
+    def scaled(self, width: float, height: float) -> Floats:
+        """Vertices (n, 2) in an image of width × height that fills the same frame."""
+        return self.vertices * (width / self.width, height / self.height)
+
+
+@dataclass(frozen=True, eq=False)
+class Strokes:
+    """Pen strokes on paper: chains of cubic Bézier segments, in points (1/72 inch).
+
+    width, height: the sheet, points.
+    points: (p, 2) control points of all strokes, one stroke after the other.
+    first: (s + 1,) stroke i owns points[first[i] : first[i + 1]], 3k + 1 of them; one is a dot.
+    widths: (s,) pen width of each stroke, points.
+    """
+
+    width: float
+    height: float
+    points: Floats = field(default_factory=lambda: np.zeros((0, 2)))
+    first: Ints = field(default_factory=lambda: np.zeros(1, np.int64))
+    widths: Floats = field(default_factory=lambda: np.zeros(0))
+    layer: str | None = None
+    texture: str | None = None
+    seed: int | None = None
+
+    def __len__(self) -> int:
+        return len(self.widths)
+
+    def __getitem__(self, i: int) -> Floats:
+        """Control points (3k + 1, 2) of stroke i."""
+        return self.points[self.first[i] : self.first[i + 1]]
+
+
+@dataclass(frozen=True, eq=False)
+class Texture:
+    """A stroke texture: a tile of prioritized strokes that repeats in x and y.
+
+    strokes: those of one tile in order of priority, lowest (drawn first) first; strokes.width and
+        strokes.height are the tile's size in points. A stroke may reach over the tile's border.
+    priorities: (s,) ascending.
+    whole: strokes are drawn whole or not at all (stipple dots, mortar), never trimmed to a run.
+    """
+
+    name: str
+    strokes: Strokes
+    priorities: Floats
+    whole: bool = False

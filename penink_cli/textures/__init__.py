@@ -1,0 +1,1 @@
+"""The stroke textures that penink ships, and what makes them."""
