@@ -46,3 +46,15 @@ class ParameterError(PeninkError, ValueError):
 
 class StreamError(PeninkError, OSError):
     """A file could not be opened, read or written."""
+
+
+def printable(text: str, limit: int | None = None) -> str:
+    """Escape what a terminal would not show as one line of text, and cut quoted input at ``limit`` characters.
+
+    >>> printable("a\\nb\\x1b[31m")
+    'a\\\\nb\\\\x1b[31m'
+    >>> printable("abcdef", 4)
+    'abcd…'
+    """
+    cut = text if limit is None or len(text) <= limit else text[:limit] + "…"
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in cut)

@@ -1,0 +1,133 @@
+"""The ``penink`` command: finds the subcommand, and is the one place where errors become a line and an exit status.
+
+Exit status 0: complete output delivered. 1: bad or unreadable input, a limit exceeded, a write
+error. 2: usage. A reader that went away kills by SIGPIPE in silence; INT, TERM and HUP clean up and
+then kill by that signal.
+"""
+
+from __future__ import annotations
+
+import difflib
+import importlib
+import os
+import sys
+from collections.abc import Sequence
+
+import click
+
+from penink_cli import __version__, streams
+from penink_cli.errors import PeninkError, printable
+
+# Subcommand -> (module in penink_cli.commands, first line of its help). A table, so that neither
+# `penink --help` nor one subcommand pays for the imports of all others.
+SUBCOMMANDS = {
+    "detect-edges": ("detect_edges", "Find the discontinuity edges of a photograph."),
+    "extract-samples": ("extract_samples", "Take grey samples that no edge has contaminated."),
+    "reduce": ("reduce", "Reduce samples to a coarser grid without mixing across edges."),
+    "enlarge": ("enlarge", "Reconstruct the image at any size, sharp across edges and smooth elsewhere."),
+    "blast": ("blast", "Turn grey into pen strokes of the same tone."),
+    "to-ps": ("to_ps", "Write strokes as PostScript."),
+}
+
+
+class LazyGroup(click.Group):
+    """A click group that imports a subcommand's module when it is asked for, and not before."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """All subcommands, in the order of the chain."""
+        return list(SUBCOMMANDS)
+
+    def get_command(self, ctx: click.Context, name: str) -> click.Command | None:
+        """The subcommand of that name; its function is named as its module."""
+        if name not in SUBCOMMANDS:
+            return None
+        module = SUBCOMMANDS[name][0]
+        command: click.Command = getattr(importlib.import_module(f"penink_cli.commands.{module}"), module)
+        return command
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        """As click's, with a guess at what a wrong name was meant to be."""
+        if args and not args[0].startswith("-") and args[0] not in SUBCOMMANDS:
+            near = difflib.get_close_matches(args[0], SUBCOMMANDS, n=1, cutoff=0.5)
+            hint = f"did you mean {near[0]}?" if near else f"known are {', '.join(SUBCOMMANDS)}"
+            raise click.UsageError(f"no subcommand {printable(args[0], 60)}; {hint}", ctx)
+        return super().resolve_command(ctx, args)
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """List the subcommands from the table, importing none."""
+        with formatter.section("Subcommands"):
+            formatter.write_dl([(name, first_line) for name, (_, first_line) in SUBCOMMANDS.items()])
+
+
+@click.command(cls=LazyGroup, name="penink", no_args_is_help=False, subcommand_metavar="SUBCOMMAND [OPTIONS] [FILE]")
+@click.version_option(__version__, prog_name="penink", message="%(prog)s %(version)s")
+@click.help_option("-h", "--help")
+def penink() -> None:
+    """Photographs to pen-and-ink illustrations that keep their tone and their edges at any size.
+
+    Every subcommand is a filter: it reads FILE or standard input and writes standard output, or
+    the file of -o, which appears whole or not at all.
+
+    \b
+    penink detect-edges photo.png -o e.json
+    penink extract-samples -e e.json photo.png \\
+      | penink reduce -e e.json --factor 4 \\
+      | penink enlarge -e e.json --scale 8 --soften \\
+      | penink blast -e e.json --texture crosshatch --width 4in \\
+      | penink to-ps > photo.ps
+    """
+
+
+def _complain(path: str, message: str) -> None:
+    """One line on standard error, whatever the message holds; a closed standard error is no second error."""
+    line = f"{path}: {printable(message)}\n"
+    try:
+        os.write(2, line.encode("utf-8", "backslashreplace"))
+    except OSError:
+        pass
+
+
+def _run(arguments: Sequence[str]) -> int:
+    """Run one subcommand; every error that is a user's to mend becomes one line."""
+    path = "penink"
+    if arguments and arguments[0] in SUBCOMMANDS:
+        path = f"penink {arguments[0]}"
+    try:
+        result = penink.main(args=list(arguments), prog_name="penink", standalone_mode=False)
+        streams.flush_text()
+        return result if isinstance(result, int) else 0
+    except click.UsageError as error:
+        _complain(path, f"{error.format_message()} (see {path} --help)".replace("\n", " "))
+        return 2
+    except click.exceptions.Exit as stop:
+        return stop.exit_code
+    except PeninkError as error:
+        if os.environ.get("PENINK_DEBUG") == "1":
+            raise
+        _complain(path, str(error))
+        return 1
+    except MemoryError:
+        if os.environ.get("PENINK_DEBUG") == "1":
+            raise
+        _complain(path, "not enough memory")
+        return 1
+    except (click.ClickException, click.Abort) as error:
+        _complain(path, error.format_message() if isinstance(error, click.ClickException) else "aborted")
+        return 1
+    except Exception as error:
+        if os.environ.get("PENINK_DEBUG") == "1":
+            raise
+        _complain(path, f"internal error: {type(error).__name__}: {error} (PENINK_DEBUG=1 shows where)")
+        return 1
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Entry point of the ``penink`` command."""
+    streams.install_signals()
+    try:
+        status = _run(sys.argv[1:] if arguments is None else arguments)
+    except streams.Interrupted as stop:
+        streams.die_of(stop.signum)
+    sys.exit(status)

@@ -1,0 +1,167 @@
+"""Options that subcommands share, and the types of their values."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Callable
+from typing import Any, TypeVar
+
+import click
+
+from penink_cli.errors import ParameterError, printable
+from penink_cli.units import parse_length
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+MAX_PIXELS = 100_000_000
+
+
+class Length(click.ParamType):
+    """A length on paper, in points once parsed: ``4in``, ``100mm``, ``288`` (points)."""
+
+    name = "length"
+
+    def __init__(self, zero: bool = False):
+        self.zero = zero
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
+        """Points."""
+        if isinstance(value, float):
+            return value
+        try:
+            points = parse_length(value)
+        except ParameterError as error:
+            self.fail(error.message, param, ctx)
+        if points == 0 and not self.zero:
+            self.fail("a length of nothing", param, ctx)
+        return points
+
+
+class Size(click.ParamType):
+    """``WxH`` in pixels, a pair of whole numbers from 1."""
+
+    name = "WxH"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> tuple[int, int]:
+        """(width, height)."""
+        if isinstance(value, tuple):
+            return value
+        parts = value.lower().split("x")
+        if len(parts) != 2 or not all(p.isascii() and p.isdigit() and len(p) < 10 and int(p) > 0 for p in parts):
+            self.fail(f"{printable(value, 60)!r} is not a size such as 640x480", param, ctx)
+        return int(parts[0]), int(parts[1])
+
+
+class Window(click.ParamType):
+    """``X,Y,W,H`` in pixels, whole numbers."""
+
+    name = "X,Y,W,H"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> tuple[int, int, int, int]:
+        """(x, y, width, height)."""
+        if isinstance(value, tuple):
+            return value
+        parts = value.split(",")
+        if len(parts) != 4 or not all(p.isascii() and p.isdigit() and len(p) < 10 for p in parts):
+            self.fail(f"{printable(value, 60)!r} is not a window such as 0,0,640,480", param, ctx)
+        x, y, width, height = (int(p) for p in parts)
+        if not width or not height:
+            self.fail("the window is empty", param, ctx)
+        return x, y, width, height
+
+
+class Finite(click.ParamType):
+    """A finite number within bounds; ``above`` is exclusive, the others inclusive."""
+
+    name = "number"
+
+    def __init__(self, least: float = -math.inf, most: float = math.inf, above: float = -math.inf):
+        self.least, self.most, self.above = least, most, above
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
+        """The number."""
+        try:
+            number = float(value)
+        except ValueError:
+            number = math.nan
+        if not (math.isfinite(number) and self.least <= number <= self.most and number > self.above):
+            low = f"above {self.above:g}" if self.above > -math.inf else f"from {self.least:g}"
+            high = f" to {self.most:g}" if self.most < math.inf else ""
+            bounded = self.above > -math.inf or self.least > -math.inf
+            self.fail(f"{printable(str(value), 60)!r} is not a number{f' {low}{high}' if bounded else high}", param, ctx)
+        return number
+
+
+LENGTH = Length()
+SIZE = Size()
+WINDOW = Window()
+POSITIVE = Finite(above=0)
+
+
+def filter_options(function: F) -> F:
+    """What every filter has: FILE, -o, --max-pixels, --quiet, -h.
+
+    The function receives ``file`` (a path, or None for standard input), ``output`` (a path, or
+    None for standard output), ``max_pixels`` and ``quiet``.
+    """
+    for decorate in (
+        click.argument("file", required=False, metavar="[FILE]", type=click.Path(allow_dash=True)),
+        output_options,
+    ):
+        function = decorate(function)
+    return function
+
+
+def output_options(function: F) -> F:
+    """-o, --max-pixels, --quiet, -h: for a subcommand whose inputs are its own affair."""
+    for decorate in (
+        click.help_option("-h", "--help"),
+        click.option("-q", "--quiet", is_flag=True, help="No progress bar."),
+        click.option(
+            "--max-pixels",
+            type=click.IntRange(1),
+            default=MAX_PIXELS,
+            metavar="N",
+            help="Refuse images that declare more pixels.  [default: 100000000]",
+        ),
+        click.option(
+            "-o",
+            "--output",
+            type=click.Path(allow_dash=True),
+            metavar="FILE",
+            help="Write there, whole or not at all, instead of to standard output.",
+        ),
+    ):
+        function = decorate(function)
+    return function
+
+
+def edges_option(required: bool) -> Callable[[F], F]:
+    """-e/--edges FILE: the discontinuity edges of the image."""
+    return click.option(
+        "-e",
+        "--edges",
+        "edges_file",
+        required=required,
+        type=click.Path(allow_dash=True),
+        metavar="FILE",
+        help="The edge list of the image." + ("" if required else " Without it nothing is kept sharp."),
+    )
+
+
+threads_option = click.option(
+    "--threads",
+    type=click.IntRange(1, 256),
+    metavar="N",
+    help="Threads to use; the bytes are the same for any number.  [default: one a processor]",
+)
+
+verbose_option = click.option(
+    "-v", "--verbose", is_flag=True, help="Say on standard error what was chosen automatically."
+)
+
+
+def processors() -> int:
+    """Processors this process may run on: the default of --threads."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
