@@ -1,0 +1,71 @@
+# penink.mk: pattern rules from any NAME.png, NAME.jpg or NAME.pgm to NAME.ps and NAME.preview.png.
+#
+# Include it in a Makefile of your own and ask for NAME.ps. Each stage writes a file, so that make -j
+# works and a changed option remakes only what follows from it:
+#
+#   NAME.edges.json   NAME.samples.pgm   NAME.reduced.pgm   NAME.grey.pgm   NAME.strokes.jsonl   NAME.ps
+#
+# The options of a stage, for all pictures (BLAST = --texture stipple) or for one (BLAST.camera = …):
+
+PENINK  ?= penink
+DETECT  ?=
+EXTRACT ?=
+REDUCE  ?= --factor 4
+ENLARGE ?= --scale 8 --soften
+BLAST   ?= --texture crosshatch --width 4in
+TO_PS   ?=
+PREVIEW_DPI ?= 150
+
+.DELETE_ON_ERROR:
+.SECONDARY:
+
+# NAME.STAGE.options holds the options a stage was last run with; it gets a new date only when they
+# change, so depending on it is depending on the options.
+penink-options = $(or $($(1).$(notdir $*)),$($(1)))
+penink-note = @printf '%s\n' '$(call penink-options,$(1))' | cmp -s - $@ || printf '%s\n' '$(call penink-options,$(1))' > $@
+
+PENINK_FORCE:
+%.detect.options: PENINK_FORCE
+	$(call penink-note,DETECT)
+%.extract.options: PENINK_FORCE
+	$(call penink-note,EXTRACT)
+%.reduce.options: PENINK_FORCE
+	$(call penink-note,REDUCE)
+%.enlarge.options: PENINK_FORCE
+	$(call penink-note,ENLARGE)
+%.blast.options: PENINK_FORCE
+	$(call penink-note,BLAST)
+%.to-ps.options: PENINK_FORCE
+	$(call penink-note,TO_PS)
+
+penink-detect  = $(PENINK) detect-edges $(call penink-options,DETECT) -o $@ $<
+penink-extract = $(PENINK) extract-samples $(call penink-options,EXTRACT) -e $*.edges.json -o $@ $<
+
+%.edges.json: %.png %.detect.options
+	$(penink-detect)
+%.edges.json: %.jpg %.detect.options
+	$(penink-detect)
+%.edges.json: %.pgm %.detect.options
+	$(penink-detect)
+
+%.samples.pgm: %.png %.edges.json %.extract.options
+	$(penink-extract)
+%.samples.pgm: %.jpg %.edges.json %.extract.options
+	$(penink-extract)
+%.samples.pgm: %.pgm %.edges.json %.extract.options
+	$(penink-extract)
+
+%.reduced.pgm: %.samples.pgm %.edges.json %.reduce.options
+	$(PENINK) reduce $(call penink-options,REDUCE) -e $*.edges.json -o $@ $<
+
+%.grey.pgm: %.reduced.pgm %.edges.json %.enlarge.options
+	$(PENINK) enlarge $(call penink-options,ENLARGE) -e $*.edges.json -o $@ $<
+
+%.strokes.jsonl: %.grey.pgm %.edges.json %.blast.options
+	$(PENINK) blast $(call penink-options,BLAST) -e $*.edges.json -o $@ $<
+
+%.ps: %.strokes.jsonl %.to-ps.options
+	$(PENINK) to-ps $(call penink-options,TO_PS) -o $@ $<
+
+%.preview.png: %.ps
+	gs -q -dSAFER -dBATCH -dNOPAUSE -dEPSCrop -dGraphicsAlphaBits=4 -sDEVICE=pnggray -r$(PREVIEW_DPI) -sOutputFile=$@ $<
