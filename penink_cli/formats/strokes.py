@@ -1,0 +1,231 @@
+"""``*.strokes.jsonl``: pen strokes, one JSON text a line.
+
+The first line is the header, the sheet in points::
+
+    {"format": "penink-strokes", "version": 1, "width": 288.000, "height": 192.000, "texture": "crosshatch", "seed": 0}
+
+and every further line a stroke, a chain of k cubic Bézier segments with 3k + 1 control
+points, or a dot with one::
+
+    {"width": 0.4000, "points": [[10.000, 20.000], [14.100, 20.300], [18.000, 20.300], [22.000, 20.000]]}
+
+x right, y down, from the sheet's top-left corner; strokes may reach over the sheet. Lines
+end at ``\\n`` and nowhere else; none is empty. No number is larger than 10⁷, no line longer
+than 16 MiB. See README.md beside this file and schemas/strokes.schema.json.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterator
+from typing import Any, BinaryIO, Protocol
+
+import numpy as np
+
+from penink_cli.errors import FormatError, ParameterError
+from penink_cli.formats import _stroke_lines, strict_json
+from penink_cli.model import Strokes
+
+LIMIT = 1e7  # points; 3.5 km. Keeps thousandths exact and every format's integers within 32 bits
+MAX_LINE = 16 << 20
+BLOCK = 1 << 20
+BATCH = 1 << 14
+
+
+def read(stream: BinaryIO, source: str) -> Strokes:
+    """Read a whole strokes file; raises FormatError with the number of the line at fault."""
+    try:
+        return _read(stream)
+    except FormatError as error:
+        raise error.from_source(source) from None
+
+
+def _read(stream: BinaryIO) -> Strokes:
+    line_number = 0
+    header: dict[str, Any] | None = None
+    points: list[np.ndarray] = []
+    counts: list[np.ndarray] = []
+    widths: list[np.ndarray] = []
+    for text in _blocks(stream):
+        start = 0
+        if header is None:
+            start = text.index(b"\n") + 1
+            header = _header(text[: start - 1])
+            line_number = 1
+        # A point takes at least 6 bytes and a stroke 28, so nothing that is parsed can overflow these.
+        block_points = np.empty(((len(text) - start) // 6 + 2, 2))
+        block_counts = np.empty((len(text) - start) // 28 + 2, np.int64)
+        block_widths = np.empty(len(block_counts))
+        while start < len(text):
+            start, strokes, used = _stroke_lines.parse(text, start, LIMIT, block_points, block_counts, block_widths)
+            line_number += strokes
+            points.append(block_points[:used].copy())
+            counts.append(block_counts[:strokes].copy())
+            widths.append(block_widths[:strokes].copy())
+            if start < len(text):  # a line that is not plain: right in another way, or wrong
+                line_number += 1
+                end = text.index(b"\n", start)
+                width, control = _stroke(text[start:end], line_number)
+                points.append(control)
+                counts.append(np.array([len(control)], np.int64))
+                widths.append(np.array([width]))
+                start = end + 1
+    if header is None:
+        raise FormatError("empty; the first line of a strokes file is its header")
+    first = np.zeros(1 + sum(map(len, counts)), np.int64)
+    if counts:
+        np.cumsum(np.concatenate(counts), out=first[1:])
+    return Strokes(
+        points=np.concatenate(points) if points else np.zeros((0, 2)),
+        first=first,
+        widths=np.concatenate(widths) if widths else np.zeros(0),
+        **header,
+    )
+
+
+def _blocks(stream: BinaryIO) -> Iterator[bytes]:
+    """The stream in blocks of whole lines, each ended by its newline, the last one too."""
+    rest: list[bytes] = []
+    held = 0
+    line_number = 1
+    while block := stream.read(BLOCK):
+        cut = block.rfind(b"\n") + 1
+        if held + (block.find(b"\n") if cut else len(block)) > MAX_LINE:
+            raise FormatError(f"line {line_number}: longer than {MAX_LINE} bytes")
+        if cut:
+            text = b"".join((*rest, block[:cut]))
+            line_number += text.count(b"\n")
+            yield text
+            rest, held = [block[cut:]], len(block) - cut
+        else:
+            rest.append(block)
+            held += len(block)
+    if held:
+        yield b"".join((*rest, b"\n"))
+
+
+def _header(line: bytes) -> dict[str, Any]:
+    """The header's members, by their names in Strokes."""
+    value = _json(line, 1)
+    if not isinstance(value, dict) or value.get("format") != "penink-strokes":
+        raise FormatError('line 1: no header {"format": "penink-strokes", "version": 1, …}')
+    version = value.get("version")
+    if isinstance(version, bool) or not isinstance(version, int) or version != 1:
+        raise FormatError(f"line 1: version {_shown(version)}, only 1 is known")
+    header: dict[str, Any] = {}
+    for side in ("width", "height"):
+        header[side] = _size(value, side, 1)
+    for name in ("layer", "texture"):
+        text = value.get(name)
+        if not (text is None or isinstance(text, str)):
+            raise FormatError(f"line 1: {name} {_shown(text)} is not a string")
+        header[name] = text
+    seed = value.get("seed")
+    if seed is not None and (isinstance(seed, bool) or not isinstance(seed, int) or abs(seed) >= 1 << 63):
+        raise FormatError(f"line 1: seed {_shown(seed)} is not a whole number of 64 bits")
+    header["seed"] = seed
+    return header
+
+
+def _stroke(line: bytes, line_number: int) -> tuple[float, np.ndarray]:
+    """Width and control points (3k + 1, 2) of one line."""
+    value = _json(line, line_number)
+    if not isinstance(value, dict):
+        raise FormatError(f"line {line_number}: {_shown(value)} is not a stroke")
+    width = _size(value, "width", line_number)
+    points = value.get("points")
+    if not isinstance(points, list) or len(points) % 3 != 1:
+        found = f"{len(points)} points" if isinstance(points, list) else f"points {_shown(points)}"
+        raise FormatError(f"line {line_number}: {found}; a stroke has 3k + 1 of them, a list of [x, y]")
+    for k, point in enumerate(points):
+        if not isinstance(point, list) or len(point) != 2 or not all(map(_is_number, point)):
+            raise FormatError(f"line {line_number}: point {k}: {_shown(point)} is not [x, y] within ±{LIMIT:.0f}")
+    return width, np.array(points, np.float64)
+
+
+def _size(value: dict[str, Any], name: str, line_number: int) -> float:
+    number = value.get(name)
+    if number is None or not _is_number(number) or not number > 0:
+        raise FormatError(f"line {line_number}: {name} {_shown(number)} is not a number above 0 and up to {LIMIT:.0f}")
+    return float(number)
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, (int, float)) and not isinstance(value, bool) and -LIMIT <= value <= LIMIT
+
+
+def _json(line: bytes, line_number: int) -> Any:
+    try:
+        return strict_json.loads(line)
+    except FormatError as error:
+        raise FormatError(f"line {line_number}: {error.message}") from None
+
+
+def _shown(value: Any) -> str:
+    """A value as found, shortened; nothing is said of a member that is missing but that."""
+    if value is None:
+        return "missing"
+    text = json.dumps(value)
+    return text if len(text) <= 60 else text[:57] + "..."
+
+
+class Sink(Protocol):
+    """Whatever bytes can be written to: a file, or an output of streams.py."""
+
+    def write(self, data: Any, /) -> int:
+        """Take all of the bytes."""
+
+
+class Writer:
+    """Writes a strokes file piece by piece; the header goes out at once.
+
+    width, height: the sheet in points.
+    """
+
+    def __init__(
+        self,
+        out: Sink,
+        width: float,
+        height: float,
+        layer: str | None = None,
+        texture: str | None = None,
+        seed: int | None = None,
+    ):
+        for name, side in (("width", width), ("height", height)):
+            if not (math.isfinite(side) and 0 < side <= LIMIT):
+                raise ParameterError(f"a sheet {side:g} points in {name}; a strokes file holds up to {LIMIT:.0f}")
+        text = f'{{"format": "penink-strokes", "version": 1, "width": {max(width, 0.001):.3f}'
+        text += f', "height": {max(height, 0.001):.3f}'
+        for name, value in (("layer", layer), ("texture", texture), ("seed", seed)):
+            if value is not None:
+                text += f', "{name}": {json.dumps(value)}'
+        self._out = out
+        self._written = 0
+        out.write(text.encode("ascii") + b"}\n")
+
+    def add(self, strokes: Strokes) -> None:
+        """Append strokes; their own header members are not looked at.
+
+        Coordinates are rounded to thousandths of a point, widths to ten-thousandths (never to 0).
+        Raises ParameterError for a number that is not finite or larger than the format allows.
+        """
+        points = np.ascontiguousarray(strokes.points, np.float64)
+        first = np.ascontiguousarray(strokes.first, np.int64)
+        widths = np.ascontiguousarray(strokes.widths, np.float64)
+        for start in range(0, len(widths), BATCH):
+            stop = min(start + BATCH, len(widths))
+            room = np.empty((stop - start) * 48 + int(first[stop] - first[start]) * 32, np.uint8)
+            size = _stroke_lines.put(points, first, widths, start, stop, LIMIT, room)
+            if size < 0:
+                raise ParameterError(
+                    f"stroke {self._written - 1 - size}: a number beyond ±{LIMIT:.0f} points, or a width of nothing"
+                )
+            self._out.write(room[:size].data)
+        self._written += len(widths)
+
+
+def write(out: Sink, strokes: Strokes) -> None:
+    """Write a whole strokes file."""
+    s = strokes
+    Writer(out, s.width, s.height, layer=s.layer, texture=s.texture, seed=s.seed).add(s)

@@ -1,0 +1,200 @@
+"""The strokes file: what is written is read back, what is wrong is refused by its line."""
+
+import io
+import json
+from importlib import resources
+
+import jsonschema
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from penink_cli.errors import FormatError, ParameterError
+from penink_cli.formats import _stroke_lines, strokes
+from penink_cli.model import Strokes
+
+HEADER = b'{"format": "penink-strokes", "version": 1, "width": 100, "height": 50}\n'
+
+numbers = st.floats(-9e6, 9e6).map(lambda v: round(v, 3))
+pens = st.floats(0.001, 1e4).map(lambda v: max(round(v, 4), 0.001))
+
+
+@st.composite
+def drawings(draw):
+    segments = draw(st.lists(st.integers(0, 3), max_size=8))
+    first = np.concatenate([[0], np.cumsum([3 * k + 1 for k in segments])]).astype(np.int64)
+    points = np.array(draw(st.lists(st.tuples(numbers, numbers), min_size=int(first[-1]), max_size=int(first[-1]))))
+    widths = draw(st.lists(pens, min_size=len(segments), max_size=len(segments)))
+    return Strokes(
+        draw(pens),
+        draw(pens),
+        points.reshape(-1, 2),
+        first,
+        np.array(widths, float),
+        layer=draw(st.none() | st.text()),
+        texture=draw(st.none() | st.text()),
+        seed=draw(st.none() | st.integers(-(1 << 62), 1 << 62)),
+    )
+
+
+def written(s):
+    out = io.BytesIO()
+    strokes.write(out, s)
+    return out.getvalue()
+
+
+def read(text):
+    return strokes.read(io.BytesIO(text), "a.strokes.jsonl")
+
+
+def test_the_compiled_build_is_the_one_under_test():
+    assert _stroke_lines.COMPILED
+
+
+@given(drawings())
+def test_round_trip(s):
+    back = read(written(s))
+    assert (back.layer, back.texture, back.seed) == (s.layer, s.texture, s.seed)
+    assert np.array_equal(back.first, s.first)
+    assert np.allclose(back.points, s.points, rtol=0, atol=0.0006)
+    assert np.allclose(back.widths, s.widths, rtol=0, atol=0.00006)
+    assert written(back) == written(read(written(back)))
+
+
+@given(drawings())
+def test_every_line_is_what_json_and_the_schema_say(s):
+    schema = json.loads(resources.files("penink_cli.formats").joinpath("schemas/strokes.schema.json").read_text())
+    jsonschema.Draft202012Validator.check_schema(schema)
+    lines = written(s).decode("ascii").split("\n")
+    assert lines.pop() == ""
+    values = [json.loads(line) for line in lines]
+    for value in values:
+        jsonschema.validate(value, schema)
+    back = read(written(s))
+    for i, value in enumerate(values[1:]):
+        assert value["width"] == back.widths[i]
+        assert np.array_equal(np.array(value["points"], float), back[i])
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        b'{"points": [[1, 2]], "width": 3}',
+        b'{"width": 3, "points": [[1, 2]], "colour": "red"}',
+        b' { "width" :\t3.0,"points":[ [1,2] ] } ',
+        b'{"width": 3e0, "points": [[0.1e1, 20E-1]]}',
+        b'{"width": 3.00000000000000000000, "points": [[1, 2]]}',
+        b'{"w\\u0069dth": 3, "points": [[1, 2]]}',
+    ],
+)
+@pytest.mark.parametrize("ending", [b"\n", b"\r\n", b""])
+def test_one_stroke_in_other_words(line, ending):
+    s = read(HEADER + line + ending)
+    assert s.widths.tolist() == [3.0]
+    assert s.points.tolist() == [[1.0, 2.0]]
+
+
+@given(st.decimals(-99999, 99999, places=5).map(str))
+def test_numbers_are_the_doubles_that_python_reads(text):
+    assert read(HEADER + b'{"width": 1, "points": [[%s, 0]]}' % text.encode()).points[0, 0] == float(text)
+
+
+@pytest.mark.parametrize(
+    ("text", "complaint"),
+    [
+        (b"", "empty"),
+        (b"\n", "line 1"),
+        (b"[]\n", "line 1: no header"),
+        (b'{"format": "penink-edges", "version": 1, "width": 1, "height": 1}\n', "line 1: no header"),
+        (b'{"format": "penink-strokes", "version": 2, "width": 1, "height": 1}\n', "line 1: version 2"),
+        (b'{"format": "penink-strokes", "version": true, "width": 1, "height": 1}\n', "line 1: version true"),
+        (b'{"format": "penink-strokes", "version": 1.0, "width": 1, "height": 1}\n', "line 1: version 1.0"),
+        (b'{"format": "penink-strokes", "version": 1, "height": 1}\n', "line 1: width missing"),
+        (b'{"format": "penink-strokes", "version": 1, "width": 0, "height": 1}\n', "line 1: width 0 "),
+        (b'{"format": "penink-strokes", "version": 1, "width": 1, "height": true}\n', "line 1: height true"),
+        (b'{"format": "penink-strokes", "version": 1, "width": 1, "height": 1, "layer": 7}\n', "layer 7 is not"),
+        (b'{"format": "penink-strokes", "version": 1, "width": 1, "height": 1, "seed": 0.5}\n', "seed 0.5 is not"),
+        (HEADER + b"\n", "line 2"),
+        (HEADER + b"7\n", "line 2: 7 is not a stroke"),
+        (HEADER + b'{"width": 1, "points": [[1, 2]]}\n{"width": 1, "points": [[1, 2]]\n', "line 3"),
+        (HEADER + b'{"width": 1, "points": []}\n', "line 2: 0 points"),
+        (HEADER + b'{"width": 1, "points": [[1, 2], [1, 2]]}\n', "line 2: 2 points"),
+        (HEADER + b'{"width": 1}\n', "line 2: points missing"),
+        (HEADER + b'{"width": 1, "points": {"0": 1}}\n', 'line 2: points {"0": 1}'),
+        (HEADER + b'{"width": 1, "points": [[1, 2, 3]]}\n', "line 2: point 0: [1, 2, 3]"),
+        (HEADER + b'{"width": 1, "points": [[1, false]]}\n', "line 2: point 0: [1, false]"),
+        (HEADER + b'{"width": 1, "points": [[1, NaN]]}\n', "line 2"),
+        (HEADER + b'{"width": 1, "points": [[1, 1e999]]}\n', "line 2"),
+        (HEADER + b'{"width": 1, "points": [[1, 10000001]]}\n', "line 2: point 0"),
+        (HEADER + b'{"width": 1, "points": [[01, 1]]}\n', "line 2"),
+        (HEADER + b'{"width": 1, "points": [[1., 1]]}\n', "line 2"),
+        (HEADER + b'{"width": 1, "points": [[.5, 1]]}\n', "line 2"),
+        (HEADER + b'{"width": 1, "points": [[+5, 1]]}\n', "line 2"),
+        (HEADER + b'{"width": 1, "points": [[--5, 1]]}\n', "line 2"),
+        (HEADER + b'{"width": 1, "points": [[-, 1]]}\n', "line 2"),
+        (HEADER + b'{"width": 1, "points": [[1 1]]}\n', "line 2"),
+        (HEADER + b'{"width": 1, "points": [[1, 1],]}\n', "line 2"),
+        (HEADER + b'{"width": -1, "points": [[1, 1]]}\n', "line 2: width -1"),
+        (HEADER + b'{"width": 0, "points": [[1, 1]]}\n', "line 2: width 0"),
+        (HEADER + b'{"width": "1", "points": [[1, 1]]}\n', 'line 2: width "1"'),
+        (HEADER + b'{"width": 1, "width": 1, "points": [[1, 1]]}\n', "line 2"),
+        (HEADER + b'{"width": 1, "points": [[1, 1]]} {"width": 1, "points": [[1, 1]]}\n', "line 2"),
+        (HEADER + b'{"width": 1, "points": [[1, 1]]}\r{"width": 1, "points": [[1, 1]]}\n', "line 2"),
+        (HEADER + b'{"width": 1,\n"points": [[1, 1]]}\n', "line 2"),
+        (b"\xef\xbb\xbf" + HEADER, "line 1"),
+        (HEADER + b'{"width": 1, "points": [[1, 1]], "a": "\xff"}\n', "line 2"),
+        (HEADER.decode().encode("utf-16"), "line 1"),
+    ],
+)
+def test_refused(text, complaint):
+    with pytest.raises(FormatError) as refused:
+        read(text)
+    assert complaint in str(refused.value)
+    assert str(refused.value).startswith("a.strokes.jsonl: ")
+    assert "\n" not in str(refused.value)
+
+
+def test_a_line_separator_does_not_end_a_line():
+    text = HEADER[:-2] + ', "layer": "a\u2028b"}\n'.encode()
+    assert read(text + b'{"width": 1, "points": [[1, 2]], "note": "\xe2\x80\xa8"}\n').layer == "a\u2028b"
+
+
+def test_line_numbers_hold_over_blocks(monkeypatch):
+    monkeypatch.setattr(strokes, "BLOCK", 37)
+    good = b'{"width": 1, "points": [[1, 1]]}\n'
+    other = b'{"points": [[1, 1]], "width": 1}\n'
+    assert len(read(HEADER + (good + other) * 50)) == 100
+    with pytest.raises(FormatError, match="line 102: width 0"):
+        read(HEADER + (good + other) * 50 + b'{"width": 0, "points": [[1, 1]]}\n')
+
+
+def test_a_line_without_end_is_refused_before_it_is_held():
+    class Endless:
+        asked = 0
+
+        def read(self, size):
+            self.asked += size
+            return HEADER + b"[" * (size - len(HEADER)) if self.asked == size else b"[" * size
+
+    stream = Endless()
+    with pytest.raises(FormatError, match="line 2: longer than"):
+        strokes.read(stream, "-")
+    assert stream.asked < 3 * strokes.MAX_LINE
+
+
+@pytest.mark.parametrize("wrong", [np.nan, np.inf, -np.inf, 1.1e7])
+def test_what_cannot_be_written_is_refused(wrong):
+    good = Strokes(9, 9, np.zeros((2, 2)), np.array([0, 1, 2]), np.ones(2))
+    bad = Strokes(9, 9, np.array([[0, 0], [wrong, 0]]), np.array([0, 1, 2]), np.ones(2))
+    writer = strokes.Writer(io.BytesIO(), 9, 9)
+    writer.add(good)
+    with pytest.raises(ParameterError, match="stroke 3:"):
+        writer.add(bad)
+    with pytest.raises(ParameterError, match="points in width"):
+        strokes.Writer(io.BytesIO(), wrong, 9)
+
+
+def test_a_width_is_never_written_as_nothing():
+    s = read(written(Strokes(9, 9, np.zeros((1, 2)), np.array([0, 1]), np.array([1e-9]))))
+    assert s.widths[0] > 0
