@@ -1,0 +1,99 @@
+"""The command itself: the table of subcommands, errors, exit statuses."""
+
+from __future__ import annotations
+
+import importlib
+import tomllib
+
+import click
+import pytest
+
+from penink_cli import errors, options, units
+from penink_cli.main import SUBCOMMANDS
+from tests.conftest import ROOT
+
+
+def kernels() -> list[str]:
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())
+    return [module["name"] for module in project["tool"]["setuptools"].get("ext-modules", [])]
+
+
+@pytest.mark.parametrize("kernel", kernels())
+def test_the_compiled_build_of_each_kernel_is_under_test(kernel):
+    module = importlib.import_module(kernel)
+    assert not module.__file__.endswith(".py")
+    assert module.COMPILED is True
+
+
+@pytest.mark.parametrize("name", SUBCOMMANDS)
+def test_every_subcommand_is_described_in_the_table_as_in_its_docstring(name):
+    module, first_line = SUBCOMMANDS[name]
+    command = getattr(importlib.import_module(f"penink_cli.commands.{module}"), module)
+    assert isinstance(command, click.Command)
+    assert command.name == name
+    assert command.help.splitlines()[0] == first_line
+    for parameter in command.params:
+        if isinstance(parameter, click.Option):
+            assert parameter.help, f"{name} {parameter.opts} has no help"
+
+
+@pytest.mark.parametrize("name", SUBCOMMANDS)
+def test_every_subcommand_has_the_options_of_a_filter(name, penink):
+    done = penink(name, "--help")
+    assert done.returncode == 0 and not done.stderr
+    for option in (b"--output", b"--quiet", b"--max-pixels"):
+        assert option in done.stdout
+
+
+def test_version(penink):
+    from penink_cli import __version__
+
+    done = penink("--version")
+    assert done.stdout.decode() == f"penink {__version__}\n" and done.returncode == 0
+
+
+@pytest.mark.parametrize(
+    ("arguments", "complaint"),
+    [
+        (["enlrage"], "did you mean enlarge?"),
+        (["reduce", "--fctor", "4"], "--factor"),
+        (["enlarge", "--scale", "nan"], "not a number above 0"),
+        (["enlarge", "--size", "4x0"], "not a size"),
+        (["blast", "--width", "4parsec"], "not a length"),
+    ],
+)
+def test_wrong_usage_is_one_line_and_status_2(arguments, complaint, penink):
+    done = penink(*arguments)
+    assert done.returncode == 2
+    assert complaint in done.stderr.decode()
+    assert done.stderr.count(b"\n") == 1 and not done.stdout
+
+
+def test_a_missing_file_is_one_line_and_status_1(penink):
+    done = penink("detect-edges", "no\nsuch\x1b.png")
+    assert done.returncode == 1
+    assert done.stderr == b"penink detect-edges: no\\nsuch\\x1b.png: No such file or directory\n"
+    assert not done.stdout
+
+
+def test_lengths_are_points_and_know_their_units():
+    assert units.parse_length("1in") == 72
+    assert units.parse_length("25.4 mm".replace(" ", "")) == 72
+    assert units.parse_length("2.54cm") == pytest.approx(72)
+    assert units.parse_length(".5") == 0.5
+    assert units.parse_length("600px", dpi=600) == 72
+    for wrong in ("", "in", "-1in", "1e3", "nan", "1 in", "600px", "1inch", "٣in"):
+        with pytest.raises(errors.ParameterError):
+            units.parse_length(wrong)
+
+
+@pytest.mark.parametrize("text", ["640x480", "1X1"])
+def test_sizes(text):
+    width, height = options.SIZE.convert(text, None, None)
+    assert f"{width}x{height}" == text.lower()
+
+
+@pytest.mark.parametrize("text", ["", "x", "0x4", "4x", "4x4x4", "-1x4", "1.5x2", "٤x٤"])
+def test_sizes_that_are_none(text):
+    with pytest.raises(click.BadParameter):
+        options.SIZE.convert(text, None, None)
