@@ -7,6 +7,7 @@ then kill by that signal.
 
 from __future__ import annotations
 
+import contextlib
 import difflib
 import importlib
 import os
@@ -83,10 +84,8 @@ def penink() -> None:
 def _complain(path: str, message: str) -> None:
     """One line on standard error, whatever the message holds; a closed standard error is no second error."""
     line = f"{path}: {printable(message)}\n"
-    try:
+    with contextlib.suppress(OSError):
         os.write(2, line.encode("utf-8", "backslashreplace"))
-    except OSError:
-        pass
 
 
 def _run(arguments: Sequence[str]) -> int:

@@ -58,7 +58,9 @@ class Window(click.ParamType):
 
     name = "X,Y,W,H"
 
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> tuple[int, int, int, int]:
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> tuple[int, int, int, int]:
         """(x, y, width, height)."""
         if isinstance(value, tuple):
             return value
@@ -89,7 +91,8 @@ class Finite(click.ParamType):
             low = f"above {self.above:g}" if self.above > -math.inf else f"from {self.least:g}"
             high = f" to {self.most:g}" if self.most < math.inf else ""
             bounded = self.above > -math.inf or self.least > -math.inf
-            self.fail(f"{printable(str(value), 60)!r} is not a number{f' {low}{high}' if bounded else high}", param, ctx)
+            found = printable(str(value), 60)
+            self.fail(f"{found!r} is not a number{f' {low}{high}' if bounded else high}", param, ctx)
         return number
 
 

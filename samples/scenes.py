@@ -14,7 +14,6 @@ from PIL import Image
 from scipy.ndimage import gaussian_filter
 
 
-
 def unit(v: np.ndarray) -> np.ndarray:
     return v / np.sqrt((v * v).sum(-1, keepdims=True))
 
@@ -169,7 +168,9 @@ def keys(size: int = 768, k: int = 3) -> tuple[np.ndarray, np.ndarray]:
     def thrown(shape: np.ndarray, dx: float, dy: float, blur: float) -> np.ndarray:
         return gaussian_filter(np.roll(shape.astype(float), (int(dy / step), int(dx / step)), (0, 1)), blur / step)
 
-    first = key(*turned(-1.9, -1.2, 62), ((3.6, 0.45, 0.14), (4.1, 0.7, 0.16), (4.62, 0.5, 0.15), (5.0, 0.3, 0.1)), True)
+    first = key(
+        *turned(-1.9, -1.2, 62), ((3.6, 0.45, 0.14), (4.1, 0.7, 0.16), (4.62, 0.5, 0.15), (5.0, 0.3, 0.1)), True
+    )
     second = key(
         *turned(-1.1, -2.0, 20), ((3.5, 0.6, 0.16), (4.05, 0.4, 0.12), (4.5, 0.75, 0.18), (4.95, 0.35, 0.12)), False
     )
