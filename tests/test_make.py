@@ -1,0 +1,59 @@
+"""The pattern rules of samples/penink.mk, driven by make itself."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from tests.conftest import ROOT, environment
+
+STAGES = [f"disc.{stage}" for stage in ("edges.json", "samples.pgm", "reduced.pgm", "grey.pgm", "strokes.jsonl", "ps")]
+
+
+@pytest.fixture
+def folder(tmp_path):
+    (tmp_path / "Makefile").write_text(f"include {ROOT}/samples/penink.mk\n")
+    y, x = np.mgrid[:64, :64] + 0.5
+    disc = np.where(np.hypot(x - 32, y - 32) < 20, 60, 220).astype(np.uint8)
+    (tmp_path / "disc.pgm").write_bytes(b"P5 64 64 255\n" + disc.tobytes())
+    return tmp_path
+
+
+def make(folder, *arguments):
+    program = f"PENINK={sys.executable} -m penink_cli"
+    command = ["make", "--no-print-directory", program, "BLAST=--texture crosshatch --width 1in", *arguments]
+    return subprocess.run(command, cwd=folder, env=environment(MAKEFLAGS=""), capture_output=True, text=True, check=False)
+
+
+def remade(done) -> list[str]:
+    return [line.split("-o ")[1].split()[0] for line in done.stdout.splitlines() if "penink_cli" in line and "-o " in line]
+
+
+def test_one_file_a_stage_and_nothing_twice(folder):
+    first = make(folder, "-j2", "disc.ps")
+    assert first.returncode == 0, first.stderr
+    assert remade(first) == STAGES
+    assert all((folder / stage).stat().st_size for stage in STAGES)
+    assert remade(make(folder, "disc.ps")) == []
+
+
+@pytest.mark.parametrize(
+    ("option", "first_remade"),
+    [("REDUCE=--factor 2", 2), ("BLAST.disc=--texture crosshatch --width 2in", 4), ("DETECT=--sigma 2", 0)],
+)
+def test_a_changed_option_remakes_what_follows_from_it(folder, option, first_remade):
+    assert make(folder, "disc.ps").returncode == 0
+    again = make(folder, "disc.ps", option)
+    assert again.returncode == 0, again.stderr
+    assert remade(again) == STAGES[first_remade:]
+
+
+def test_a_failed_stage_leaves_no_target_and_names_the_file(folder):
+    (folder / "disc.pgm").write_bytes((folder / "disc.pgm").read_bytes()[:1000])
+    done = make(folder, "disc.ps")
+    assert done.returncode != 0
+    assert "disc.pgm: truncated" in done.stderr
+    assert not list(folder.glob("*.json")) and not list(folder.glob("*.ps"))
