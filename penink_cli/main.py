@@ -125,8 +125,4 @@ def _run(arguments: Sequence[str]) -> int:
 def main(arguments: Sequence[str] | None = None) -> None:
     """Entry point of the ``penink`` command."""
     streams.install_signals()
-    try:
-        status = _run(sys.argv[1:] if arguments is None else arguments)
-    except streams.Interrupted as stop:
-        streams.die_of(stop.signum)
-    sys.exit(status)
+    sys.exit(_run(sys.argv[1:] if arguments is None else arguments))

@@ -1,0 +1,210 @@
+"""PGM, the portable grey map, by the Netpbm definition: P2 and P5 read, P5 written.
+
+An image library would rescale an odd maxval; here every maxval from 1 to 65535 is kept. The
+same reader takes the three channels of PPM (P3, P6) for the sake of photographs.
+
+Header: magic, width, height, maxval, each followed by white space (blank, TAB, CR, LF). A comment
+runs from ``#`` to the end of its line, that end included, and is as if it were not there: it may stand
+within a number, and does not replace the one white space character that separates maxval from the
+raster. After that character every byte of P5 is raster, whatever it looks like.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, BinaryIO
+
+import numpy as np
+import numpy.typing as npt
+
+from penink_cli.errors import FormatError, LimitError, printable
+from penink_cli.model import GreyImage
+
+if TYPE_CHECKING:
+    from penink_cli.streams import Output
+
+Values = npt.NDArray[Any]  # uint8 where maxval < 256, else uint16
+
+WHITE = b" \t\r\n"
+MAX_HEADER = 1 << 20  # bytes, comments included
+MAX_VALUE = 10**15  # of a header number: far beyond any limit, and within every integer type
+BAND = 1 << 20  # bytes read, checked and converted at a time
+
+
+def read(stream: BinaryIO, source: str, max_pixels: int) -> GreyImage:
+    """The first image of a PGM stream.
+
+    Raises FormatError for anything that is not PGM or is cut short, LimitError for an image of more
+    than max_pixels pixels, before anything of that size is allocated.
+    """
+    magic = stream.read(2)
+    if magic not in (b"P2", b"P5"):
+        raise FormatError(f"not a PGM image: begins with {_shown(magic)}, not P2 or P5", source)
+    values, maxval = read_raster(stream, source, max_pixels, magic)
+    return GreyImage(values, maxval)
+
+
+def read_raster(stream: BinaryIO, source: str, max_pixels: int, magic: bytes) -> tuple[Values, int]:
+    """What follows the magic number of P2, P5 (values (h, w)) or P3, P6 (h, w, 3), and maxval."""
+    channels = 3 if magic in (b"P3", b"P6") else 1
+    width, height, maxval = _header(stream, source)
+    for name, value in (("width", width), ("height", height)):
+        if value < 1:
+            raise FormatError(f"{name} is {value}; at least 1 is needed", source)
+    if not 1 <= maxval <= 65535:
+        raise FormatError(f"maxval is {maxval}; 1 to 65535 are allowed", source)
+    check_size(width, height, max_pixels, source)
+    count = width * height * channels
+    try:
+        if magic in (b"P5", b"P6"):
+            flat = _binary(stream, source, count, maxval, width * channels)
+        else:
+            flat = _plain(stream, source, count, maxval, width * channels)
+    except MemoryError:
+        raise LimitError(f"{width} x {height} pixels do not fit into memory", source) from None
+    return flat.reshape((height, width) if channels == 1 else (height, width, 3)), maxval
+
+
+def check_size(width: int, height: int, max_pixels: int, source: str | None = None) -> None:
+    """Raise LimitError where an image declares more than max_pixels pixels."""
+    if width * height > max_pixels:
+        raise LimitError(f"declares {width} x {height} pixels; at most {max_pixels} are allowed (--max-pixels)", source)
+
+
+def _shown(found: bytes) -> str:
+    return repr(printable(found.decode("latin-1"), 60)) if found else "nothing: it is empty"
+
+
+def _header(stream: BinaryIO, source: str) -> tuple[int, int, int]:
+    """Width, height and maxval, read up to and with the one white space character before the raster."""
+    numbers: list[int] = []
+    place = ("width", "height", "maxval")
+    value: int | None = None
+    comment = False
+    separated = False  # white space has been seen since the last number or the magic number
+    for _ in range(MAX_HEADER):
+        byte = stream.read(1)
+        if not byte:
+            raise FormatError(f"truncated: ends before its {place[len(numbers)]}", source)
+        if comment:
+            comment = byte not in b"\r\n"
+        elif byte == b"#":
+            comment = True
+        elif byte in WHITE:
+            separated = True
+            if value is not None:
+                numbers.append(value)
+                value = None
+                if len(numbers) == 3:
+                    return numbers[0], numbers[1], numbers[2]
+        elif byte.isdigit() and separated:
+            value = (value or 0) * 10 + int(byte)
+            if value > MAX_VALUE:
+                raise FormatError(f"{place[len(numbers)]} is more than {MAX_VALUE}", source)
+        else:
+            found = _shown(byte + stream.read(59))
+            raise FormatError(f"{place[len(numbers)]}: a decimal number is expected, found {found}", source)
+    raise FormatError(f"the header is longer than {MAX_HEADER} bytes", source)
+
+
+def _binary(stream: BinaryIO, source: str, count: int, maxval: int, row: int) -> Values:
+    """``count`` values of one byte each, or of two, the most significant first."""
+    stored = np.dtype(np.uint8) if maxval < 256 else np.dtype(">u2")
+    flat: Values = np.empty(count, stored)
+    view = flat.view(np.uint8).data
+    filled = 0
+    while filled < len(view):
+        # By bands: memory is touched, and so taken, only as the bytes arrive.
+        got = stream.readinto(view[filled : filled + BAND])  # type: ignore[attr-defined]
+        if not got:
+            raise FormatError(f"truncated: {filled} of {len(view)} raster bytes", source)
+        filled += got
+    if stored.itemsize == 2:
+        flat = flat.byteswap(inplace=True).view(np.uint16) if np.little_endian else flat.view(np.uint16)
+    if maxval not in (255, 65535):
+        for start in range(0, count, BAND):
+            _check_values(flat[start : start + BAND], start, maxval, row, source)
+    return flat
+
+
+def _check_values(values: npt.NDArray[np.integer], start: int, maxval: int, row: int, source: str) -> None:
+    if values.max(initial=0) > maxval:
+        at = int(np.argmax(values > maxval))
+        i, j = divmod(start + at, row)
+        raise FormatError(f"row {i + 1}, value {j + 1} is {values[at]}; maxval is {maxval}", source)
+
+
+def _plain(stream: BinaryIO, source: str, count: int, maxval: int, row: int) -> Values:
+    """``count`` decimal values in white space, and nothing after them.
+
+    Comments are taken here too, as Netpbm's own programs do: ``#`` can mean nothing else.
+    """
+    flat = np.empty(count, np.uint8 if maxval < 256 else np.uint16)
+    filled = 0
+    rest = b""  # the beginning of a number, or of a comment, whose end is yet to come
+    comment = False
+    while True:
+        block = stream.read(BAND)
+        text = rest + block
+        if comment or b"#" in text:
+            text, comment = _without_comments(text, comment)
+        if block:
+            # Keep back the last number: its digits may go on in the next block.
+            cut = max(text.rfind(bytes([w])) for w in WHITE) + 1
+            text, rest = text[:cut], text[cut:]
+            if len(rest) > BAND:
+                raise FormatError(f"value {filled + 1} has more than {BAND} digits", source)
+        stray = text.translate(None, b"0123456789" + WHITE)
+        if stray:
+            raise FormatError(f"raster: decimal numbers are expected, found {_shown(stray[:61])}", source)
+        # strtol, which saturates: what is too large stays too large.
+        values = np.fromstring(text, np.int64, sep=" ") if text.strip(WHITE) else np.empty(0, np.int64)
+        _check_values(values, filled, maxval, row, source)
+        if filled + len(values) > count:
+            raise FormatError(f"more than {count} raster values", source)
+        flat[filled : filled + len(values)] = values
+        filled += len(values)
+        if not block:
+            break
+    if filled < count:
+        raise FormatError(f"truncated: {filled} of {count} raster values", source)
+    return flat
+
+
+def _without_comments(text: bytes, comment: bool) -> tuple[bytes, bool]:
+    """Replace each comment by a blank; whether the text ends within one."""
+    kept: list[bytes] = []
+    while True:
+        if comment:
+            ends = [at for at in (text.find(b"\n"), text.find(b"\r")) if at >= 0]
+            if not ends:
+                return b" ".join(kept) + b" ", True
+            text, comment = text[min(ends) :], False
+        before, mark, text = text.partition(b"#")
+        kept.append(before)
+        if not mark:
+            return b" ".join(kept), False
+        comment = True
+
+
+def header(width: int, height: int, maxval: int) -> bytes:
+    """The header of a P5 image of width × height pixels.
+
+    >>> header(640, 480, 255)
+    b'P5\\n640 480\\n255\\n'
+    """
+    return b"P5\n%d %d\n%d\n" % (width, height, maxval)
+
+
+def rows(values: npt.NDArray[np.integer], maxval: int) -> memoryview:
+    """Raster bytes of one or more rows: (k, w) values from 0 to maxval."""
+    stored = np.ascontiguousarray(values, np.uint8 if maxval < 256 else np.dtype(">u2"))
+    return stored.view(np.uint8).reshape(-1).data
+
+
+def write(out: Output, image: GreyImage) -> None:
+    """Write an image as P5, by bands."""
+    height, width = image.values.shape
+    out.write(header(width, height, image.maxval))
+    band = max(1, BAND // width)
+    for top in range(0, height, band):
+        out.write(rows(image.values[top : top + band], image.maxval))

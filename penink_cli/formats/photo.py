@@ -1,0 +1,181 @@
+"""Photographs to grey: PGM and PPM by the Netpbm reader, PNG, JPEG, TIFF and WebP by Pillow.
+
+Pillow is given these formats and no other: left to itself it would start Ghostscript on an EPS.
+Its leniencies are made up for here: it only warns of images between 89 and 179 megapixels,
+accepts a PNG whose compressed rows end early, and forgets that white is zero in some TIFFs.
+
+Grey is Rec. 601 luma of the values as stored, in integers; transparency lies on white; the EXIF
+orientation is applied. What was stored in 16 bits of grey stays in 16 bits.
+"""
+
+from __future__ import annotations
+
+import io
+import struct
+import warnings
+import zlib
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, BinaryIO
+
+import numpy as np
+import numpy.typing as npt
+
+from penink_cli.errors import FormatError, LimitError, PeninkError, printable
+from penink_cli.formats import pgm
+from penink_cli.model import GreyImage
+
+if TYPE_CHECKING:
+    from PIL import Image
+
+# How each format begins, and Pillow's name for it.
+SIGNATURES = (
+    (b"\x89PNG\r\n\x1a\n", "PNG"),
+    (b"\xff\xd8\xff", "JPEG"),
+    (b"II*\x00", "TIFF"),
+    (b"MM\x00*", "TIFF"),
+    (b"II+\x00", "TIFF"),
+    (b"MM\x00+", "TIFF"),
+    (b"RIFF", "WEBP"),
+)
+BAND = 1 << 20  # pixels converted at a time
+LEAST_BYTES = 64_000_000  # an encoded photograph may have these, or 8 for each pixel allowed
+RED, GREEN, BLUE = 19595, 38470, 7471  # Rec. 601 luma, of 65536
+
+
+def read_grey(stream: BinaryIO, source: str, max_pixels: int) -> GreyImage:
+    """A photograph in any of the formats above as grey samples.
+
+    Raises FormatError for any other file or a damaged one, LimitError for one that declares more
+    than max_pixels pixels, before it is decoded.
+    """
+    magic = stream.read(2)
+    if magic in (b"P2", b"P5"):
+        return GreyImage(*pgm.read_raster(stream, source, max_pixels, magic))
+    if magic in (b"P3", b"P6"):
+        values, maxval = pgm.read_raster(stream, source, max_pixels, magic)
+        return _by_bands(values.shape[1], values.shape[0], maxval, lambda top, bottom: values[top:bottom])
+    start = magic + stream.read(14)
+    kind = next((name for signature, name in SIGNATURES if start.startswith(signature)), None)
+    if kind is None or (kind == "WEBP" and start[8:12] != b"WEBP"):
+        shown = f"begins with {printable(start[:8].decode('latin-1'))!r}" if start else "it is empty"
+        raise FormatError(f"not a PGM, PPM, PNG, JPEG, TIFF or WebP photograph: {shown}", source)
+    most = max(LEAST_BYTES, 8 * max_pixels)
+    encoded = start + stream.read(most)
+    if len(encoded) > most:
+        raise LimitError(f"photograph of more than {most} bytes (--max-pixels raises this limit)", source)
+    try:
+        return _decoded(encoded, kind, max_pixels)
+    except PeninkError as error:
+        raise error.from_source(source) from None
+
+
+def _decoded(encoded: bytes, kind: str, max_pixels: int) -> GreyImage:
+    from PIL import Image
+
+    Image.MAX_IMAGE_PIXELS = None  # our own limit stands in its place, and is an error
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # of damaged metadata, which are of no use here
+            with Image.open(io.BytesIO(encoded), formats=(kind,)) as image:
+                pgm.check_size(*image.size, max_pixels)
+                if kind == "PNG":
+                    _check_png(encoded, *image.size)
+                image.load()
+                return _grey(_upright(image))
+    except PeninkError:
+        raise
+    except MemoryError:
+        raise LimitError("does not fit into memory") from None
+    except Exception as error:  # Pillow's decoders raise nearly anything on damaged files
+        why = str(error) or type(error).__name__
+        raise FormatError(f"damaged {kind} photograph: {printable(why, 60)}") from error
+
+
+def _upright(image: Image.Image) -> Image.Image:
+    """Turn as EXIF says; a photograph whose EXIF cannot be read stays as it is stored."""
+    from PIL import ImageOps
+
+    try:
+        return ImageOps.exif_transpose(image)
+    except Exception:
+        return image
+
+
+def _grey(image: Image.Image) -> GreyImage:
+    """Luma of a decoded image, on white where it is transparent."""
+    if image.mode.startswith("I;16"):
+        return _grey_16(image)
+    if image.mode in ("1", "L") and "transparency" not in image.info:
+        return GreyImage(np.array(image.convert("L")))
+    if image.mode in ("I", "F", "LAB", "HSV"):
+        raise FormatError(f"photograph of kind {image.mode}; grey or colour of 8 or 16 bits is needed")
+    transparent = image.has_transparency_data
+    if transparent and image.mode != "RGBA":
+        image = image.convert("RGBA")
+    elif not transparent and image.mode != "RGB":
+        image = image.convert("RGB")
+    width, height = image.size
+    return _by_bands(width, height, 255, lambda top, bottom: np.asarray(image.crop((0, top, width, bottom))))
+
+
+def _grey_16(image: Image.Image) -> GreyImage:
+    tags: Any = getattr(image, "tag_v2", {})
+    values = np.array(image).astype(np.uint16)
+    bits = tags.get(258, (16,))
+    maxval = (1 << (bits[0] if isinstance(bits, tuple) else bits)) - 1
+    clear = image.info.get("transparency")
+    if isinstance(clear, int):
+        values[values == clear] = maxval
+    if tags.get(262) == 0:  # WhiteIsZero, which Pillow heeds in 8 bits only
+        values = (maxval - values).astype(np.uint16)
+    return GreyImage(values.astype(np.uint8) if maxval < 256 else values, maxval)
+
+
+def _by_bands(width: int, height: int, maxval: int, band: Callable[[int, int], npt.NDArray[np.integer]]) -> GreyImage:
+    """Luma of the colours that ``band(top, bottom)`` gives, a band at a time: the integers in between are 8 bytes."""
+    grey = np.empty((height, width), np.uint8 if maxval < 256 else np.uint16)
+    step = max(1, BAND // width)
+    for top in range(0, height, step):
+        bottom = min(height, top + step)
+        grey[top:bottom] = _luma(band(top, bottom).astype(np.int64))
+    return GreyImage(grey, maxval)
+
+
+def _luma(colours: npt.NDArray[np.int64]) -> npt.NDArray[np.int64]:
+    """Grey (k, w) of RGB (k, w, 3), or of 8-bit RGBA (k, w, 4) on white."""
+    if colours.shape[2] == 4:
+        alpha = colours[..., 3:]
+        colours = (colours[..., :3] * alpha + 255 * (255 - alpha) + 127) // 255
+    return (colours[..., 0] * RED + colours[..., 1] * GREEN + colours[..., 2] * BLUE + 32768) >> 16
+
+
+# ------------------------------------------------------------------------ PNG
+
+_CHANNELS = {0: 1, 2: 3, 3: 1, 4: 2, 6: 4}
+# Adam7: first column, first row, step in x and step in y of each pass.
+_PASSES = ((0, 0, 8, 8), (4, 0, 8, 8), (0, 4, 4, 8), (2, 0, 4, 4), (0, 2, 2, 4), (1, 0, 2, 2), (0, 1, 1, 2))
+
+
+def _check_png(encoded: bytes, width: int, height: int) -> None:
+    """Raise FormatError where the compressed data ends before the last row, which Pillow would leave black."""
+    bits, colour, _, _, interlace = encoded[24:29]
+    per_pixel = bits * _CHANNELS.get(colour, 4)
+    passes = _PASSES if interlace else ((0, 0, 1, 1),)
+    needed = 0
+    for x, y, step_x, step_y in passes:
+        columns, lines = -(-(width - x) // step_x), -(-(height - y) // step_y)
+        if columns > 0 and lines > 0:
+            needed += lines * (1 + (columns * per_pixel + 7) // 8)
+    found, inflate, at = 0, zlib.decompressobj(), 8
+    while at + 8 <= len(encoded) and found < needed:
+        length, name = struct.unpack_from(">I4s", encoded, at)
+        if name == b"IEND":
+            break
+        if name == b"IDAT":
+            piece = encoded[at + 8 : at + 8 + length]
+            while piece and found < needed and not inflate.eof:
+                found += len(inflate.decompress(piece, BAND))
+                piece = inflate.unconsumed_tail
+        at += 12 + length
+    if found < needed:
+        raise FormatError(f"truncated: {found} of {needed} bytes of PNG rows")
