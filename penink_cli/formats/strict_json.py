@@ -51,7 +51,7 @@ def _constant(name: str) -> Any:
 _DECODER = json.JSONDecoder(object_pairs_hook=_members, parse_float=_finite, parse_constant=_constant)
 
 
-def loads(text: bytes, source: str, place: str = "") -> Any:
+def loads(text: bytes, source: str | None = None, place: str = "") -> Any:
     """The value of one JSON text.
 
     ``place`` (such as ``line 3``) is put before what was found. Raises FormatError.
