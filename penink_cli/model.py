@@ -85,6 +85,26 @@ class Strokes:
         return self.points[self.first[i] : self.first[i + 1]]
 
 
+@dataclass(frozen=True)
+class HatchLayer:
+    """One layer of hatching, for those who lay strokes as densely as the tone asks instead of from a tile.
+
+    angle: direction of the strokes in degrees, from x towards y (clockwise on paper).
+    low, high: the layer begins where the picture's tone exceeds `low`, and has brought it to `high` where it ends.
+    pen_pt: width of the strokes, points.
+    spacing_pt: the strokes' centre lines are nowhere closer than this, points; 0 for no limit.
+    wave_pt, wave_length_pt: how far the strokes wander sideways, as the grain of wood does, and over what length.
+    """
+
+    angle: float
+    low: float
+    high: float
+    pen_pt: float = 0.4
+    spacing_pt: float = 0.0
+    wave_pt: float = 0.0
+    wave_length_pt: float = 0.0
+
+
 @dataclass(frozen=True, eq=False)
 class Texture:
     """A stroke texture: a tile of prioritized strokes that repeats in x and y.
@@ -93,9 +113,11 @@ class Texture:
         strokes.height are the tile's size in points. A stroke may reach over the tile's border.
     priorities: (s,) ascending.
     whole: strokes are drawn whole or not at all (stipple dots, mortar), never trimmed to a run.
+    layers: what the tile is an instance of where that is plain hatching, in the order of drawing.
     """
 
     name: str
     strokes: Strokes
     priorities: Floats
     whole: bool = False
+    layers: tuple[HatchLayer, ...] = ()

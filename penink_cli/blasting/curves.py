@@ -1,0 +1,143 @@
+"""Chains of cubic Béziers: cutting them at parameters and sampling them, many at a time.
+
+The curves of a set lie one after the other, `points` and `first` as in `model.Strokes`:
+curve i owns points[first[i] : first[i + 1]], 3k + 1 of them, or one for a dot.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from penink_cli.model import Floats, Ints
+
+
+def ramp(counts: Ints) -> Ints:
+    """0 … counts[0]-1, 0 … counts[1]-1, … as one array.
+
+    >>> ramp(np.array([2, 0, 3])).tolist()
+    [0, 1, 0, 1, 2]
+    """
+    ends = np.cumsum(counts)
+    return np.arange(int(ends[-1]) if len(ends) else 0) - np.repeat(ends - counts, counts)
+
+
+def starts(counts: Ints) -> Ints:
+    """(n + 1,) where each of n consecutive groups begins, and the end of the last."""
+    out = np.zeros(len(counts) + 1, np.int64)
+    np.cumsum(counts, out=out[1:])
+    return out
+
+
+@dataclass(frozen=True, eq=False)
+class Polylines:
+    """Curves sampled at even parameters.
+
+    points: (p, 2); first: (n + 1,) curve i owns points[first[i] : first[i + 1]].
+    pieces: (p,) for the point at which a cubic segment's samples begin or go on, how many
+        samples that segment has: the parameter between two points is 1/pieces apart.
+    """
+
+    points: Floats
+    first: Ints
+
+
+def segments_of(first: Ints) -> Ints:
+    """Number of cubic segments of each curve; none for a dot."""
+    return (np.diff(first) - 1) // 3
+
+
+def evaluate(control: Floats, t: Floats) -> Floats:
+    """Points (m, 2) at parameters t (m,) of cubics control (m, 4, 2)."""
+    u = 1.0 - t
+    w = np.stack([u * u * u, 3 * u * u * t, 3 * u * t * t, t * t * t], axis=1)
+    return w[:, 0, None] * control[:, 0] + w[:, 1, None] * control[:, 1] + (
+        w[:, 2, None] * control[:, 2] + w[:, 3, None] * control[:, 3]
+    )
+
+
+def control_polygons(points: Floats, first: Ints) -> tuple[Floats, Ints]:
+    """The cubics (m, 4, 2) of all curves, and the curve (m,) that each belongs to."""
+    k = segments_of(first)
+    owner = np.repeat(np.arange(len(k)), k)
+    at = first[owner] + 3 * ramp(k)
+    return points[at[:, None] + np.arange(4)], owner
+
+
+def pieces_of(points: Floats, first: Ints, step: float) -> Ints:
+    """Into how many pieces of about step each cubic segment is sampled, by its control polygon."""
+    control, _ = control_polygons(points, first)
+    legs = np.diff(control, axis=1)
+    length = np.sqrt(legs[..., 0] ** 2 + legs[..., 1] ** 2)
+    total = length[:, 0] + length[:, 1] + length[:, 2]
+    return np.maximum(1, np.ceil(total / step - 1e-9)).astype(np.int64)
+
+
+def sample(points: Floats, first: Ints, pieces: Ints) -> Polylines:
+    """Each segment's start and inner samples, and the last point of each curve; a dot is one point."""
+    control, owner = control_polygons(points, first)
+    k = segments_of(first)
+    if len(owner) == 0:
+        return Polylines(points[first[:-1]], np.arange(len(k) + 1))
+    seg = np.repeat(np.arange(len(pieces)), pieces)
+    inner = evaluate(control[seg], ramp(pieces) / pieces[seg])
+    per_curve = np.bincount(owner, weights=pieces, minlength=len(k)).astype(np.int64) + 1
+    begin = starts(per_curve)
+    out = np.empty((begin[-1], 2))
+    out[begin[1:] - 1] = points[first[1:] - 1]
+    where = np.ones(begin[-1], bool)
+    where[begin[1:] - 1] = False
+    out[where] = inner
+    return Polylines(out, begin)
+
+
+def blossom(control: Floats, a: Floats, b: Floats) -> Floats:
+    """The cubics (m, 4, 2) cut to parameters a … b (m,): the polar form at aaa, aab, abb, bbb."""
+
+    def at(r: Floats, s: Floats, t: Floats) -> Floats:
+        rr, ss, tt = r[:, None], s[:, None], t[:, None]
+        p = control[:, :3] + rr[..., None] * (control[:, 1:] - control[:, :3])
+        p = p[:, :2] + ss[..., None] * (p[:, 1:] - p[:, :2])
+        return p[:, 0] + tt * (p[:, 1] - p[:, 0])
+
+    return np.stack([at(a, a, a), at(a, a, b), at(a, b, b), at(b, b, b)], axis=1)
+
+
+def cut(points: Floats, first: Ints, pieces: Ints, curve: Ints, a: Floats, b: Floats) -> tuple[Floats, Ints]:
+    """Parts of curves: part i is curve[i] from a[i] to b[i], counted in samples (see `sample`), whole or not.
+
+    Returns points and first of the parts. A part of a dot is the dot.
+    """
+    k = segments_of(first)
+    seg_begin = starts(k)
+    # where each segment begins, counted in samples from the start of its curve
+    run = starts(pieces)
+    offset = run[:-1] - run[np.repeat(seg_begin[:-1], k)] if len(pieces) else np.zeros(0, np.int64)
+    base = run[np.minimum(seg_begin[curve], len(pieces))]
+    dots = k[curve] == 0
+    limit = run[seg_begin[curve + 1]] - base
+    a = np.clip(a, 0, limit)
+    b = np.clip(b, a, limit)
+    lo = np.searchsorted(run, base + a, side="right") - 1
+    hi = np.searchsorted(run, base + b, side="left") - 1
+    last = seg_begin[curve + 1] - 1
+    lo = np.clip(lo, seg_begin[curve], np.maximum(last, seg_begin[curve]))
+    hi = np.clip(hi, lo, np.maximum(last, lo))
+    n = np.where(dots, 0, hi - lo + 1)
+    part = np.repeat(np.arange(len(curve)), n)
+    seg = lo[part] + ramp(n)
+    sizes = 3 * n + 1
+    begin = starts(sizes)
+    out = np.empty((begin[-1], 2))
+    if len(seg):
+        control, _ = control_polygons(points, first)
+        m = pieces[seg].astype(float)
+        t0 = np.clip((a[part] - offset[seg]) / m, 0.0, 1.0)
+        t1 = np.clip((b[part] - offset[seg]) / m, 0.0, 1.0)
+        cubics = blossom(control[seg], t0, t1)
+        at = begin[part] + 3 * ramp(n)
+        for j in range(4):
+            out[at + j] = cubics[:, j]
+    out[begin[:-1][dots]] = points[first[curve[dots]]]
+    return out, begin

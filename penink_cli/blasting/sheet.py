@@ -1,0 +1,227 @@
+"""The sheet of paper while it is being drawn on: its tone wanted, its ink so far, and what is still due.
+
+The sheet is divided into square cells of about 0.96 pt, 8 × 8 subpixels each (0.12 pt,
+600 dpi), one bit a subpixel. Ink already there is never counted twice, so the tone of
+crossing strokes is exact, and the cost is the same whatever the picture's resolution.
+
+What is due is kept low-passed: ``residual = G * (tone - ink)``, G a Gaussian of σ 2.5 pt
+cut off where the tone steps strongly, so that ink on one side of an edge never pays for
+tone on the other. Adding ink a at p changes the squared error (t - c)ᵀ G (t - c) by
+-a (2 residual(p) - own), own being what the stroke itself adds at p, so a trial costs one
+look-up a sample.
+
+A device paints every pixel that a stroke touches. It thereby widens a stroke of direction
+θ by (|cos θ| + |sin θ|) of its pixels; `gain_pt` is the size of that pixel, 0 for none.
+
+This module alone imports the compiled kernel `_ink`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+import numpy.typing as npt
+
+from penink_cli.blasting import _ink
+from penink_cli.blasting.curves import Polylines
+from penink_cli.model import Floats, Ints
+
+Cells = npt.NDArray[np.float32]
+
+CELL_PT = 0.96
+#: σ of the low-pass of what is due. Narrower than what the eye (and the measure) blurs,
+#: so that tone is right in small things too.
+SIGMA_PT = 2.5
+#: A step of tone (0 … 1) over which ink is not credited.
+STEP = 0.25
+#: Candidates are tried in blocks of this size, those of every second block at the same time,
+#: so no stroke longer than this less the kernel may be tried in parallel.
+BLOCK_PT = 144.0
+
+
+def gaussian(sigma: float, radius: int) -> Floats:
+    """(2 radius + 1,) weights that sum to 1, the same on every machine."""
+    w = np.array([round(math.exp(-0.5 * (k / sigma) ** 2), 9) for k in range(-radius, radius + 1)])
+    return w / math.fsum(w)
+
+
+class Sheet:
+    """A sheet of width × height points that wants `tone` ((h, w) ink coverage 0 … 1, any size)."""
+
+    def __init__(self, tone: Floats, width_pt: float, height_pt: float, gain_pt: float, threads: int = 1):
+        self.width = width_pt
+        self.height = height_pt
+        self.columns = max(1, round(width_pt / CELL_PT))
+        self.rows = max(1, round(height_pt / CELL_PT))
+        #: subpixels per point, x and y; they differ by less than a percent save on tiny sheets
+        self.scale = np.array([8.0 * self.columns / width_pt, 8.0 * self.rows / height_pt])
+        self.pitch = float(self.scale[0] + self.scale[1]) / 2.0
+        self.gain = gain_pt * self.pitch
+        self.threads = max(1, threads)
+        self.tone: Cells = resample(tone, self.rows, self.columns).astype(np.float32)
+        self.bits = np.zeros((self.rows, self.columns, 8), np.uint8)
+        self.counts = np.zeros((self.rows, self.columns), np.uint8)
+        radius = math.ceil(2.5 * SIGMA_PT / CELL_PT)
+        g = gaussian(SIGMA_PT / CELL_PT, radius)
+        self.kernel: Cells = np.ascontiguousarray(np.outer(g, g).astype(np.float32))
+        # the kernel along a stroke, by distance in quarters of a cell
+        peak = float(g[radius]) ** 2
+        self.profile = np.array(
+            [round(peak * math.exp(-0.5 * (k / 4 * CELL_PT / SIGMA_PT) ** 2), 9) for k in range(4 * radius + 1)]
+        )
+        self.residual: Cells = np.zeros((self.rows, self.columns), np.float32)
+        self.step = STEP
+
+    def clear(self) -> None:
+        """Take all ink away."""
+        self.bits[:] = 0
+        self.counts[:] = 0
+
+    @property
+    def ink(self) -> Cells:
+        """Coverage so far (rows, columns), 0 … 1."""
+        return self.counts * np.float32(1 / 64)
+
+    def low_pass(self, values: Cells, kernel: Cells | None = None) -> Cells:
+        """`values` blurred by the kernel (G by default), cut off at strong steps of tone, zero outside the frame."""
+        out = np.empty_like(values)
+        kernel = self.kernel if kernel is None else kernel
+        edges = list(range(0, self.rows, 64)) + [self.rows]
+
+        def band(i: int) -> None:
+            _ink.gather(values, self.tone, kernel, self.step, out, edges[i], edges[i + 1])
+
+        self._each(band, range(len(edges) - 1))
+        return out
+
+    def owe(self, tone: Cells) -> None:
+        """Set what is due: `tone` less the ink so far, low-passed."""
+        self.residual = self.low_pass(tone - self.ink)
+
+    def owe_strictly(self) -> None:
+        """Set what is due by the paper's rule: the tone itself, with the low-passed ink so far taken from it."""
+        self.step = 2.0
+        self.residual = self.tone - self.low_pass(self.ink)
+
+    def paint(self, lines: Polylines, widths: Floats, splat: bool = False) -> int:
+        """Ink polylines (points), whatever is due. Returns the number of subpixels newly inked."""
+        order = np.arange(len(widths))
+        return _ink.paint(
+            self.bits, self.counts, self.residual, self.tone, self.kernel, self.step,
+            np.ascontiguousarray(lines.points * self.scale), lines.first, widths * self.pitch, order, self.gain, splat,
+        )  # fmt: skip
+
+    def place(
+        self,
+        lines: Polylines,
+        widths: Floats,
+        batches: Sequence[Ints],
+        *,
+        walls: npt.NDArray[np.uint8] | None = None,
+        shifts: Sequence[float] = (0.0,),
+        spacing_pt: Floats | None = None,
+        whole: bool = False,
+        strict: bool = False,
+        cost: float = 0.0,
+        shortest_pt: float = 7.0,
+        shortest_wall_pt: float = 2.0,
+        most: int = 4,
+    ) -> tuple[Ints, Floats]:
+        """Try polylines, batch by batch, and draw of each what is worth drawing.
+
+        batches: indices of polylines, in the order in which they are tried.
+        walls: (n,) bit 0: the polyline's start is at a wall (an edge, the frame), bit 1: its end.
+        shifts: sideways moves to try, in units of spacing_pt (n,).
+        cost: what a run must gain, in cells × tone. Returns the runs (r, 3): polyline, first and last of
+        its points, and how far each run was moved (r, 2) in points.
+
+        Polylines of one batch are tried in blocks; those of every second block each way at the
+        same time, for they are too far apart to meet. The result depends on neither threads nor chance.
+        """
+        n = len(widths)
+        points = np.ascontiguousarray(lines.points * self.scale)
+        walls = np.zeros(n, np.uint8) if walls is None else walls
+        spacing = np.zeros(n) if spacing_pt is None else spacing_pt * self.pitch
+        runs = np.full((n, most, 2), -1, np.int64)
+        moved = np.zeros((n, 2))
+        moves = np.asarray(shifts, np.float64)
+        longest = int(np.diff(lines.first).max()) + 2 if n else 2
+        widths_sub = np.ascontiguousarray(widths * self.pitch)
+
+        def run(order: Ints) -> None:
+            _ink.place(
+                self.bits, self.counts, self.residual, self.tone, self.kernel, self.step, self.profile,
+                points, lines.first, widths_sub, walls, order, self.gain, moves, spacing,
+                whole, strict, cost, shortest_pt * self.pitch, shortest_wall_pt * self.pitch,
+                runs, moved, np.empty((5, longest)), np.empty(longest, np.int64),
+            )  # fmt: skip
+
+        block = self._blocks(lines)
+        for batch in batches:
+            for group in coloured(batch, block[batch]):
+                self._each(run, group)
+        who, which = np.nonzero(runs[:, :, 0] >= 0)
+        found = np.column_stack([who, runs[who, which]])
+        found[:, 1:] -= lines.first[who][:, None]
+        return found, moved[who] / self.scale
+
+    def _blocks(self, lines: Polylines) -> Ints:
+        """(n, 2) column and row of the block that each polyline's middle is in."""
+        lo = np.minimum.reduceat(lines.points, lines.first[:-1]) if len(lines.first) > 1 else np.zeros((0, 2))
+        hi = np.maximum.reduceat(lines.points, lines.first[:-1]) if len(lines.first) > 1 else np.zeros((0, 2))
+        size = BLOCK_PT
+        if len(lo):
+            reach = float((hi - lo).max()) + 2 * 2.5 * SIGMA_PT + 8.0
+            size = max(size, reach)
+        return np.floor((lo + hi) / (2 * size)).astype(np.int64)
+
+    def _each(self, work, items) -> None:  # type: ignore[no-untyped-def]
+        items = list(items)
+        if self.threads == 1 or len(items) < 2:
+            for item in items:
+                work(item)
+            return
+        with ThreadPoolExecutor(self.threads) as pool:
+            list(pool.map(work, items))
+
+
+def coloured(batch: Ints, block: Ints) -> list[list[Ints]]:
+    """A batch as four groups, one for each colour of a 2 × 2 board, of one array for each block of that colour."""
+    groups = []
+    colour = (block[:, 0] & 1) + 2 * (block[:, 1] & 1)
+    for c in range(4):
+        mine = colour == c
+        if not mine.any():
+            continue
+        members, where = batch[mine], block[mine]
+        key = where[:, 1] * (1 << 32) + where[:, 0]
+        order = np.argsort(key, kind="stable")
+        cuts = np.flatnonzero(np.diff(key[order])) + 1
+        groups.append([np.ascontiguousarray(part) for part in np.split(members[order], cuts)])
+    return groups
+
+
+def resample(tone: Floats, rows: int, columns: int) -> Floats:
+    """`tone` stretched to rows × columns: the mean over each cell where it shrinks, bilinear where it grows."""
+    return _resample_rows(_resample_rows(tone, rows).T, columns).T.copy()
+
+
+def _resample_rows(tone: Floats, n: int) -> Floats:
+    h = len(tone)
+    if n == h:
+        return tone
+    if n > h:
+        at = np.clip((np.arange(n) + 0.5) * h / n - 0.5, 0, h - 1)
+        lo = np.minimum(at.astype(np.int64), max(0, h - 2))
+        f = (at - lo)[:, None]
+        return tone[lo] * (1 - f) + tone[np.minimum(lo + 1, h - 1)] * f
+    total = np.zeros((h + 1, tone.shape[1]))
+    np.cumsum(tone, axis=0, out=total[1:])
+    at = np.arange(n + 1) * (h / n)
+    lo = np.minimum(at.astype(np.int64), h - 1)
+    f = (at - lo)[:, None]
+    edge = total[lo] * (1 - f) + total[lo + 1] * f
+    return np.clip(np.diff(edge, axis=0) * (n / h), 0.0, 1.0)

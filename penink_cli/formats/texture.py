@@ -1,0 +1,133 @@
+"""``*.texture.json``: a tile of prioritized pen strokes that repeats.
+
+One JSON text::
+
+    {"format": "penink-texture", "version": 1, "name": "dashes", "width": 144, "height": 144,
+     "strokes": [{"priority": 0, "width": 0.4, "points": [[0, 8], [12, 8], [24, 9], [36, 9]]}]}
+
+Strokes of lower priority are drawn first. ``"whole": true`` says that strokes are never shortened;
+``"layers"`` says that the tile is an instance of plain hatching, which can then be laid without a tile.
+See README.md beside this file and schemas/texture.schema.json.
+"""
+
+from __future__ import annotations
+
+import json
+from typing import Any, BinaryIO
+
+import numpy as np
+
+from penink_cli.errors import FormatError
+from penink_cli.formats import strict_json
+from penink_cli.formats.strokes import LIMIT, Sink
+from penink_cli.model import HatchLayer, Strokes, Texture
+
+MAX_BYTES = 64 << 20
+
+# Name in the file -> name in HatchLayer, least and most value.
+_LAYER = {
+    "angle": ("angle", -360.0, 360.0),
+    "from": ("low", 0.0, 1.0),
+    "to": ("high", 0.0, 1.0),
+    "pen": ("pen_pt", 0.0001, LIMIT),
+    "spacing": ("spacing_pt", 0.0, LIMIT),
+    "wave": ("wave_pt", 0.0, 144.0),
+    "wave_length": ("wave_length_pt", 0.0, LIMIT),
+}
+_NEEDED = ("angle", "from", "to", "pen")
+
+
+def read(stream: BinaryIO, source: str) -> Texture:
+    """Read a texture; raises FormatError that names the stroke or layer at fault."""
+    try:
+        text = stream.read(MAX_BYTES + 1)
+        if len(text) > MAX_BYTES:
+            raise FormatError(f"larger than {MAX_BYTES} bytes")
+        return _texture(strict_json.header(strict_json.loads(text), "penink-texture"))
+    except FormatError as error:
+        raise error.from_source(source) from None
+
+
+def _texture(document: dict[str, Any]) -> Texture:
+    name = strict_json.text(strict_json.member(document, "name"), "name")
+    width, height = (_size(strict_json.member(document, side), side) for side in ("width", "height"))
+    whole = document.get("whole", False)
+    if type(whole) is not bool:
+        raise FormatError(f"whole is {strict_json.quoted(whole)}; true or false is needed")
+    items = strict_json.array(strict_json.member(document, "strokes"), "strokes")
+    if not items:
+        raise FormatError("strokes is empty; a texture has at least one")
+    priorities, widths, points = np.empty(len(items)), np.empty(len(items)), []
+    for i, item in enumerate(items):
+        place = f"stroke {i}"
+        if not isinstance(item, dict):
+            raise FormatError(f"{place} is {strict_json.quoted(item)}; an object is needed")
+        priorities[i] = strict_json.number(strict_json.member(item, "priority", place), f"{place}: priority")
+        widths[i] = _size(strict_json.member(item, "width", place), f"{place}: width")
+        control = strict_json.pairs(strict_json.member(item, "points", place), f"{place}: points", f"{place}: point")
+        if len(control) % 3 != 1:
+            raise FormatError(f"{place}: {len(control)} points; a chain of k cubics has 3k + 1 of them, and a dot one")
+        if not (np.abs(control) <= LIMIT).all():
+            raise FormatError(f"{place}: a point beyond ±{LIMIT:.0f}")
+        points.append(control)
+    order = np.argsort(priorities, kind="stable")
+    first = np.zeros(len(items) + 1, np.int64)
+    np.cumsum([len(points[i]) for i in order], out=first[1:])
+    strokes = Strokes(width, height, np.concatenate([points[i] for i in order]), first, widths[order], texture=name)
+    layers = strict_json.array(document.get("layers", []), "layers")
+    return Texture(name, strokes, priorities[order], whole, tuple(_layer(layer, i) for i, layer in enumerate(layers)))
+
+
+def _size(value: Any, what: str) -> float:
+    size = strict_json.number(value, what, 0.0, LIMIT)
+    if size < 0.0001:
+        raise FormatError(f"{what} is {strict_json.quoted(value)}; a number from 0.0001 is needed")
+    return size
+
+
+def _layer(value: Any, i: int) -> HatchLayer:
+    place = f"layer {i}"
+    if not isinstance(value, dict):
+        raise FormatError(f"{place} is {strict_json.quoted(value)}; an object is needed")
+    for name in _NEEDED:
+        strict_json.member(value, name, place)
+    layer = HatchLayer(
+        **{
+            field: strict_json.number(value[name], f"{place}: {name}", least, most)
+            for name, (field, least, most) in _LAYER.items()
+            if name in value
+        }
+    )
+    if not layer.low < layer.high:
+        raise FormatError(f'{place}: "from" is {layer.low:g} and "to" {layer.high:g}; "from" must be less')
+    if layer.wave_pt > 0 and layer.wave_length_pt < 4 * layer.wave_pt:
+        raise FormatError(f"{place}: a wave of {layer.wave_pt:g} pt needs a wave_length of at least four times that")
+    return layer
+
+
+def write(out: Sink, texture: Texture) -> None:
+    """Write a texture, one stroke a line; coordinates in thousandths of a point."""
+    s = texture.strokes
+    head = f'{{"format": "penink-texture", "version": 1, "name": {json.dumps(texture.name)}'
+    head += f', "width": {_fixed(s.width, 3)}, "height": {_fixed(s.height, 3)}'
+    if texture.whole:
+        head += ', "whole": true'
+    if texture.layers:
+        layers = ",\n  ".join(
+            "{" + ", ".join(f'"{name}": {_fixed(getattr(layer, field), 4)}' for name, (field, *_) in _LAYER.items()) + "}"
+            for layer in texture.layers
+        )
+        head += f', "layers": [\n  {layers}]'
+    out.write((head + ', "strokes": [\n').encode("ascii"))
+    lines = []
+    for i in range(len(s)):
+        control = ", ".join(f"[{_fixed(x, 3)}, {_fixed(y, 3)}]" for x, y in s[i].tolist())
+        priority = _fixed(float(texture.priorities[i]), 4)
+        lines.append(f' {{"priority": {priority}, "width": {_fixed(float(s.widths[i]), 4)}, "points": [{control}]}}')
+    out.write((",\n".join(lines) + "\n]}\n").encode("ascii"))
+
+
+def _fixed(value: float, decimals: int) -> str:
+    """A number with a fixed number of decimals, without the zeros at their end and without a minus zero."""
+    text = f"{value:.{decimals}f}".rstrip("0").rstrip(".")
+    return "0" if text == "-0" else text
