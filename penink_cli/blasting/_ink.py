@@ -119,10 +119,8 @@ def _bar(
             if fabs(uy) > 1e-9:
                 h = d * ux / uy
                 side = fabs(r / uy)
-                if h - side > a:
-                    a = h - side
-                if h + side < b:
-                    b = h + side
+                a = max(a, h - side)
+                b = min(b, h + side)
             elif fabs(d) > r:
                 b = -1e30
             if a < b:
@@ -130,18 +128,14 @@ def _bar(
                 hi = x0 + b
         if cap0 and fabs(d) < r:
             h = sqrt(r * r - d * d)
-            if x0 - h < lo:
-                lo = x0 - h
-            if x0 + h > hi:
-                hi = x0 + h
+            lo = min(lo, x0 - h)
+            hi = max(hi, x0 + h)
         if cap1:
             d = row + 0.5 - y1
             if fabs(d) < r:
                 h = sqrt(r * r - d * d)
-                if x1 - h < lo:
-                    lo = x1 - h
-                if x1 + h > hi:
-                    hi = x1 + h
+                lo = min(lo, x1 - h)
+                hi = max(hi, x1 + h)
         if lo < hi and hi > 0.0 and lo < columns:
             c0 = cython.cast(cython.Py_ssize_t, ceil(lo - 0.5)) if lo > 0.5 else 0
             c1 = cython.cast(cython.Py_ssize_t, ceil(hi - 0.5)) if hi < columns else columns
@@ -421,7 +415,6 @@ def place(
     good: cython.double
     least: cython.Py_ssize_t
     least_wall: cython.Py_ssize_t
-    short_ok: cython.bint
     ink = scratch[0]
     own = scratch[1]
     due = scratch[2]
@@ -449,10 +442,8 @@ def place(
                 d = d / n if d > 1e-9 else 8.0
                 least = cython.cast(cython.Py_ssize_t, ceil(shortest / d))
                 least_wall = cython.cast(cython.Py_ssize_t, ceil(shortest_wall / d))
-                if least < 1:
-                    least = 1
-                if least_wall < 1:
-                    least_wall = 1
+                least = max(least, 1)
+                least_wall = max(least_wall, 1)
                 if least > n and not whole and not strict and walls[i] == 0:
                     continue
             good = 0.0

@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from penink_cli.model import Floats, Ints
 
@@ -104,11 +105,12 @@ def blossom(control: Floats, a: Floats, b: Floats) -> Floats:
     return np.stack([at(a, a, a), at(a, a, b), at(a, b, b), at(b, b, b)], axis=1)
 
 
-def cut(points: Floats, first: Ints, pieces: Ints, curve: Ints, a: Floats, b: Floats) -> tuple[Floats, Ints]:
+def cut(points: Floats, first: Ints, pieces: Ints, curve: Ints, a: npt.ArrayLike, b: npt.ArrayLike) -> tuple[Floats, Ints]:
     """Parts of curves: part i is curve[i] from a[i] to b[i], counted in samples (see `sample`), whole or not.
 
     Returns points and first of the parts. A part of a dot is the dot.
     """
+    a, b = np.asarray(a, np.float64), np.asarray(b, np.float64)
     k = segments_of(first)
     seg_begin = starts(k)
     # where each segment begins, counted in samples from the start of its curve

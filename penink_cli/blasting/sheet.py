@@ -89,7 +89,7 @@ class Sheet:
         """`values` blurred by the kernel (G by default), cut off at strong steps of tone, zero outside the frame."""
         out = np.empty_like(values)
         kernel = self.kernel if kernel is None else kernel
-        edges = list(range(0, self.rows, 64)) + [self.rows]
+        edges = [*range(0, self.rows, 64), self.rows]
 
         def band(i: int) -> None:
             _ink.gather(values, self.tone, kernel, self.step, out, edges[i], edges[i + 1])
@@ -172,7 +172,7 @@ class Sheet:
         """(n, 2) column and row of the block that each polyline's middle is in."""
         lo = np.minimum.reduceat(lines.points, lines.first[:-1]) if len(lines.first) > 1 else np.zeros((0, 2))
         hi = np.maximum.reduceat(lines.points, lines.first[:-1]) if len(lines.first) > 1 else np.zeros((0, 2))
-        size = BLOCK_PT
+        size: float = BLOCK_PT
         if len(lo):
             reach = float((hi - lo).max()) + 2 * 2.5 * SIGMA_PT + 8.0
             size = max(size, reach)
@@ -218,10 +218,11 @@ def _resample_rows(tone: Floats, n: int) -> Floats:
         lo = np.minimum(at.astype(np.int64), max(0, h - 2))
         f = (at - lo)[:, None]
         return tone[lo] * (1 - f) + tone[np.minimum(lo + 1, h - 1)] * f
-    total = np.zeros((h + 1, tone.shape[1]))
+    total: Floats = np.zeros((h + 1, tone.shape[1]))
     np.cumsum(tone, axis=0, out=total[1:])
     at = np.arange(n + 1) * (h / n)
     lo = np.minimum(at.astype(np.int64), h - 1)
     f = (at - lo)[:, None]
-    edge = total[lo] * (1 - f) + total[lo + 1] * f
-    return np.clip(np.diff(edge, axis=0) * (n / h), 0.0, 1.0)
+    edge: Floats = total[lo] * (1 - f) + total[lo + 1] * f
+    mean: Floats = np.clip(np.diff(edge, axis=0) * (n / h), 0.0, 1.0)
+    return mean

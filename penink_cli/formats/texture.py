@@ -113,8 +113,9 @@ def write(out: Sink, texture: Texture) -> None:
     if texture.whole:
         head += ', "whole": true'
     if texture.layers:
+        names = [(name, field) for name, (field, _, _) in _LAYER.items()]
         layers = ",\n  ".join(
-            "{" + ", ".join(f'"{name}": {_fixed(getattr(layer, field), 4)}' for name, (field, *_) in _LAYER.items()) + "}"
+            "{" + ", ".join(f'"{name}": {_fixed(getattr(layer, field), 4)}' for name, field in names) + "}"
             for layer in texture.layers
         )
         head += f', "layers": [\n  {layers}]'

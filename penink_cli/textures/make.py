@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 
@@ -49,14 +50,16 @@ def hatching(
             chosen.append(lines[best])
             ink += float(length[best]) * painted
     n = len(chosen)
-    points = np.round(np.concatenate(chosen), 3)
+    points: Floats = np.round(np.concatenate(chosen), 3).astype(np.float64)
     strokes = Strokes(tile_pt, tile_pt, points, np.arange(n + 1) * 4, np.full(n, pen_pt), texture=name, seed=seed)
     return Texture(name, strokes, np.arange(n, dtype=float))
 
 
-def parallel(angle: float = -45.0, **options) -> Texture:  # type: ignore[no-untyped-def]
+def parallel(angle: float = -45.0, **options: Any) -> Texture:
+    """Lines in one direction."""
     return hatching("parallel", [(angle, 0.99)], **options)
 
 
-def crosshatch(angle: float = -45.0, **options) -> Texture:  # type: ignore[no-untyped-def]
+def crosshatch(angle: float = -45.0, **options: Any) -> Texture:
+    """Lines in one direction, and across them where it is dark."""
     return hatching("crosshatch", [(angle, 0.5), (angle + 90, 0.99)], **options)

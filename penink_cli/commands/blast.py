@@ -1,0 +1,114 @@
+"""``penink blast``."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import click
+import numpy as np
+
+from penink_cli.blasting.blast import RULES
+from penink_cli.blasting.blast import blast as blast_tone
+from penink_cli.commands.inputs import only_one_standard_input, read_edges, read_grey
+from penink_cli.errors import ParameterError
+from penink_cli.formats import strokes as strokes_format
+from penink_cli.model import Floats, GreyImage
+from penink_cli.options import LENGTH, POSITIVE, Finite, edges_option, filter_options, processors, threads_option
+from penink_cli.streams import writing
+from penink_cli.texture_options import find_texture, texture_option
+
+
+class DeviceDpi(click.ParamType):
+    """Dots per inch of the printer, or ``none``."""
+
+    name = "dpi"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float | None:
+        """The resolution, None for ``none``."""
+        if value == "none":
+            return None
+        return Finite(10, 100_000).convert(value, param, ctx)
+
+
+@click.command()
+@texture_option
+@edges_option(required=False)
+@click.option("--width", type=LENGTH, help="Width of the picture on paper: 4in, 100mm, 288 (points).")
+@click.option("--dpi", type=POSITIVE, metavar="N", help="Size on paper by the samples per inch, instead of --width.")
+@click.option("--pen", type=LENGTH, help="Draw all strokes with one pen of this width.  [default: the texture's]")
+@click.option("--gamma", type=Finite(0.05, 20), default=1.0, metavar="G", help="Tone curve: grey is raised to it.")
+@click.option("--seed", type=click.IntRange(0, 2**63 - 1), default=0, show_default=True, metavar="N")
+@click.option(
+    "--device-dpi",
+    type=DeviceDpi(),
+    default="600",
+    show_default=True,
+    metavar="N|none",
+    help="Resolution of the printer, which paints every dot that a stroke touches; none for plotters and screens.",
+)
+@click.option(
+    "--rule",
+    type=click.Choice(RULES),
+    default="best",
+    show_default=True,
+    help="best: true tone. strict: the paper's rule. threshold: each stroke where the tone exceeds its own.",
+)
+@threads_option
+@filter_options
+def blast(
+    file: str | None,
+    output: str | None,
+    max_pixels: int,
+    texture_name: str,
+    edges_file: str | None,
+    width: float | None,
+    dpi: float | None,
+    pen: float | None,
+    gamma: float,
+    seed: int,
+    device_dpi: float | None,
+    rule: str,
+    threads: int | None,
+    **_: Any,
+) -> None:
+    """Turn grey into pen strokes of the same tone.
+
+    The strokes' width and density do not depend on the size: a picture blasted for any size has the same
+    tone and as many strokes to the inch. With the edges of the image strokes end at them.
+
+    \b
+    penink blast --texture crosshatch --width 4in photo.pgm | penink to-ps -o photo.ps
+    """
+    if (width is None) == (dpi is None):
+        raise click.UsageError("give one of --width and --dpi")
+    only_one_standard_input(file, edges_file, texture_name if texture_name == "-" else None)
+    texture = find_texture(texture_name)
+    edges = read_edges(edges_file)
+    image = read_grey(file, max_pixels)
+    rows, columns = image.values.shape
+    width_pt = width if width is not None else columns / (dpi or 1.0) * 72.0
+    height_pt = width_pt * rows / columns
+    check_size(width_pt, height_pt)
+    strokes = blast_tone(
+        tone_curve(image, gamma), width_pt, height_pt, edges, texture, seed=seed, pen_pt=pen,
+        device_dpi=device_dpi, rule=rule, threads=threads or processors(),
+    )  # fmt: skip
+    with writing(output, binary=False) as out:
+        strokes_format.write(out, strokes)
+
+
+def tone_curve(image: GreyImage, gamma: float) -> Floats:
+    """Ink coverage (h, w) of the image, its grey (0 … 1) raised to gamma."""
+    if gamma == 1.0:
+        return image.tone
+    # by a table, and rounded, so that the power is the same on every machine
+    table = np.array([round(1.0 - (v / image.maxval) ** gamma, 12) for v in range(image.maxval + 1)])
+    return table[image.values]
+
+
+def check_size(width_pt: float, height_pt: float) -> None:
+    """Refuse sheets of no size, and those that no memory holds."""
+    if not (0.01 <= width_pt <= 144_000 and 0.01 <= height_pt <= 144_000):
+        raise ParameterError(f"{width_pt:g} × {height_pt:g} pt on paper; from 0.01 to 144000 is allowed each way")
+    if width_pt * height_pt > 60 * 40 * 5184 * 4:
+        raise ParameterError(f"{width_pt:g} × {height_pt:g} pt on paper; 9600 square inches are allowed")

@@ -1,0 +1,46 @@
+"""Finding a texture by the value of ``--texture``: one of the shipped ones by name, or a file."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Callable
+from importlib import resources
+from typing import Any, TypeVar
+
+import click
+
+from penink_cli.errors import ParameterError, printable
+from penink_cli.formats import texture as texture_format
+from penink_cli.model import Texture
+from penink_cli.streams import reading, source_name
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+ENDING = ".texture.json"
+
+texture_option = click.option(
+    "-t",
+    "--texture",
+    "texture_name",
+    default="crosshatch",
+    show_default=True,
+    metavar="NAME|FILE",
+    help="A shipped texture (see penink texture list) or a texture file.",
+)
+
+
+def shipped() -> list[str]:
+    """Names of the textures that come with the program."""
+    tiles = resources.files("penink_cli.textures") / "tiles"
+    return sorted(f.name.removesuffix(ENDING) for f in tiles.iterdir() if f.name.endswith(ENDING))
+
+
+def find_texture(name: str) -> Texture:
+    """The texture of that name, or in that file (a name with a dot or a slash in it, or ``-``)."""
+    if name == "-" or "/" in name or "." in name:
+        with reading(name) as stream:
+            return texture_format.read(stream, source_name(name))
+    if name not in shipped():
+        raise ParameterError(f"no texture {printable(name, 60)}; known are {', '.join(shipped())}, or give a file")
+    tile = resources.files("penink_cli.textures") / "tiles" / (name + ENDING)
+    return texture_format.read(io.BytesIO(tile.read_bytes()), tile.name)
