@@ -107,6 +107,11 @@ def _run(arguments: Sequence[str]) -> int:
             raise
         _complain(path, str(error))
         return 1
+    except OSError as error:  # of click's own printing; all else that files do is a StreamError
+        if os.environ.get("PENINK_DEBUG") == "1":
+            raise
+        _complain(path, str(streams.text_failure(error)))
+        return 1
     except MemoryError:
         if os.environ.get("PENINK_DEBUG") == "1":
             raise
@@ -123,6 +128,5 @@ def _run(arguments: Sequence[str]) -> int:
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Entry point of the ``penink`` command."""
-    streams.install_signals()
+    """Run one subcommand and exit with its status; the signals are prepared already, by __main__."""
     sys.exit(_run(sys.argv[1:] if arguments is None else arguments))

@@ -17,7 +17,6 @@ import errno
 import io
 import os
 import re
-import secrets
 import select
 import signal
 import stat
@@ -242,7 +241,7 @@ def _create(directory: str) -> tuple[str, int]:
     import fcntl
 
     while True:
-        path = os.path.join(directory, f".penink-{secrets.token_hex(8)}.tmp")
+        path = os.path.join(directory, f".penink-{os.urandom(8).hex()}.tmp")
         with _guard:
             descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC | os.O_NOFOLLOW, 0o666)
             _temporaries.add(path)
@@ -326,11 +325,14 @@ def install_signals() -> None:
     """
     for descriptor in (0, 1, 2):
         # A closed one is taken by the next file opened: the edge list would be read as standard input.
+        # Its place is held by one that fails just so.
         try:
             os.fstat(descriptor)
         except OSError:
             _closed.add(descriptor)
-            os.open(os.devnull, os.O_RDWR)
+            os.open(os.devnull, os.O_RDONLY if descriptor else os.O_WRONLY)
+            if descriptor == 1:
+                sys.stdout = open(1, "w", encoding="utf-8", closefd=False)
     signal.signal(signal.SIGPIPE, signal.SIG_DFL)
     signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGPIPE})
     deadly = {s for s in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP) if signal.getsignal(s) != signal.SIG_IGN}
@@ -362,13 +364,18 @@ def die_of(number: int) -> NoReturn:
 
 def flush_text() -> None:
     """Deliver what help and listings have printed to standard output, and report what could not be."""
-    if sys.stdout is None or 1 in _closed:
+    if sys.stdout is None:
         return
     try:
         sys.stdout.flush()
     except OSError as error:
-        # The interpreter would try again at its end, and complain in its own words.
-        null = os.open(os.devnull, os.O_WRONLY)
-        os.dup2(null, 1)
-        os.close(null)
-        raise StreamError(f"cannot be written: {_why(error)}", STDOUT) from error
+        raise text_failure(error) from error
+
+
+def text_failure(error: OSError) -> StreamError:
+    """The error line for text that standard output did not take."""
+    # The interpreter would try again at its end, and complain in its own words.
+    null = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(null, 1)
+    os.close(null)
+    return StreamError(f"cannot be written: {_why(error)}", STDOUT)
