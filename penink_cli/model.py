@@ -34,6 +34,17 @@ class GreyImage:
         """Ink coverage (h, w), 0 paper … 1 solid ink."""
         return 1.0 - self.values / float(self.maxval)
 
+    @property
+    def grey(self) -> npt.NDArray[np.float32]:
+        """Grey (h, w), 0 black … 1 paper white."""
+        return np.divide(self.values, self.maxval, dtype=np.float32)
+
+    @classmethod
+    def from_grey(cls, grey: npt.NDArray[np.floating], maxval: int = 255) -> GreyImage:
+        """The nearest grey levels, half up, to grey (h, w) 0 … 1."""
+        levels = np.floor(np.clip(grey, 0, 1) * maxval + 0.5)
+        return cls(levels.astype(np.uint8 if maxval < 256 else np.uint16), maxval)
+
 
 @dataclass(frozen=True, eq=False)
 class EdgeList:

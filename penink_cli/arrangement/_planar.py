@@ -1,0 +1,360 @@
+# cython: language_level=3, boundscheck=False, wraparound=False, cdivision=True
+"""Compiled: segments on a fine integer grid that never touch but at shared vertices.
+
+Coordinates are whole multiples of `arrangement.planar.UNIT`, so every predicate is exact in 64 bits
+(a frame of 2²⁴ units squares to 2⁴⁸). All changes go through `fits`, which is why an
+arrangement built here is one by construction.
+"""
+
+import cython
+
+COMPILED = cython.compiled
+
+if cython.compiled:
+    from cython.cimports.libc.math import floor
+else:
+    from math import floor
+
+
+@cython.cfunc
+@cython.inline
+@cython.nogil
+@cython.exceptval(check=False)
+def _turn(
+    ax: cython.longlong,
+    ay: cython.longlong,
+    bx: cython.longlong,
+    by: cython.longlong,
+    cx: cython.longlong,
+    cy: cython.longlong,
+) -> cython.int:
+    """Sign of (b − a) × (c − a)."""
+    cross: cython.longlong = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
+    return (cross > 0) - (cross < 0)
+
+
+@cython.cclass
+class Planar:
+    """Segments between vertices, found again by the cells of a uniform grid they run through.
+
+    vertices: (n, 2) int64 units, shared with the caller, who may move a vertex that no live segment uses.
+    ends: (m, 2) int32 vertex numbers of each segment; a segment is live between `add` and `remove`.
+    """
+
+    vertices = cython.declare(cython.longlong[:, ::1], visibility="readonly")
+    ends = cython.declare(cython.int[:, ::1], visibility="readonly")
+    live = cython.declare(cython.uchar[::1], visibility="readonly")
+    _head: cython.int[:, ::1]
+    _entry: cython.int[:, ::1]
+    _ignored: cython.int[::1]
+    _stamp: cython.int
+    _free: cython.int
+    _cell: cython.longlong
+
+    def __init__(
+        self,
+        vertices: cython.longlong[:, ::1],
+        ends: cython.int[:, ::1],
+        live: cython.uchar[::1],
+        head: cython.int[:, ::1],
+        entry: cython.int[:, ::1],
+        ignored: cython.int[::1],
+        cell: cython.longlong,
+    ) -> None:
+        self.vertices = vertices
+        self.ends = ends
+        self.live = live
+        self._head = head
+        self._entry = entry
+        self._ignored = ignored
+        self._cell = cell
+        self._stamp = 1
+        k: cython.Py_ssize_t
+        for k in range(entry.shape[0]):
+            self._entry[k, 1] = k + 1
+        self._entry[entry.shape[0] - 1, 1] = -1
+        self._free = 0
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def _span(
+        self,
+        row: cython.longlong,
+        ax: cython.longlong,
+        ay: cython.longlong,
+        bx: cython.longlong,
+        by: cython.longlong,
+        span: cython.p_int,
+    ) -> cython.void:
+        """First and last column of the cells of one row that a segment runs through (one more on rounding)."""
+        low: cython.double = row * self._cell
+        high: cython.double = low + self._cell
+        x0: cython.double
+        x1: cython.double
+        slope: cython.double
+        if ay == by:
+            x0 = ax
+            x1 = bx
+        else:
+            slope = cython.cast(cython.double, bx - ax) / (by - ay)
+            low = max(low, min(ay, by))
+            high = min(high, max(ay, by))
+            x0 = ax + (low - ay) * slope
+            x1 = ax + (high - ay) * slope
+        if x0 > x1:
+            x0, x1 = x1, x0
+        span[0] = max(0, cython.cast(cython.int, floor((x0 - 1) / self._cell)))
+        span[1] = min(self._head.shape[1] - 1, cython.cast(cython.int, floor((x1 + 1) / self._cell)))
+
+    @cython.ccall
+    def add(self, s: cython.int) -> cython.bint:
+        """Make segment s live. False, and nothing changed, where the grid's entries are used up."""
+        a: cython.int = self.ends[s, 0]
+        b: cython.int = self.ends[s, 1]
+        ay: cython.longlong = self.vertices[a, 1]
+        by: cython.longlong = self.vertices[b, 1]
+        row: cython.longlong
+        column: cython.int
+        entry: cython.int
+        span = cython.declare(cython.int[2])
+        for row in range(min(ay, by) // self._cell, max(ay, by) // self._cell + 1):
+            self._span(row, self.vertices[a, 0], ay, self.vertices[b, 0], by, span)
+            for column in range(span[0], span[1] + 1):
+                entry = self._free
+                if entry < 0:
+                    raise MemoryError("the grid of segments is full")
+                self._free = self._entry[entry, 1]
+                self._entry[entry, 0] = s
+                self._entry[entry, 1] = self._head[row, column]
+                self._head[row, column] = entry
+        self.live[s] = 1
+        return True
+
+    @cython.ccall
+    def remove(self, s: cython.int) -> cython.void:
+        """Take segment s out."""
+        a: cython.int = self.ends[s, 0]
+        b: cython.int = self.ends[s, 1]
+        ay: cython.longlong = self.vertices[a, 1]
+        by: cython.longlong = self.vertices[b, 1]
+        row: cython.longlong
+        column: cython.int
+        entry: cython.int
+        before: cython.int
+        span = cython.declare(cython.int[2])
+        for row in range(min(ay, by) // self._cell, max(ay, by) // self._cell + 1):
+            self._span(row, self.vertices[a, 0], ay, self.vertices[b, 0], by, span)
+            for column in range(span[0], span[1] + 1):
+                before = -1
+                entry = self._head[row, column]
+                while entry >= 0 and self._entry[entry, 0] != s:
+                    before = entry
+                    entry = self._entry[entry, 1]
+                if entry < 0:
+                    continue
+                if before < 0:
+                    self._head[row, column] = self._entry[entry, 1]
+                else:
+                    self._entry[before, 1] = self._entry[entry, 1]
+                self._entry[entry, 1] = self._free
+                self._free = entry
+        self.live[s] = 0
+
+    @cython.ccall
+    def ignore_none(self) -> cython.void:
+        """Let `fits` see every live segment again."""
+        self._stamp += 1
+
+    @cython.ccall
+    def ignore(self, s: cython.int) -> cython.void:
+        """Let `fits` look through segment s until `ignore_none`."""
+        self._ignored[s] = self._stamp
+
+    @cython.ccall
+    def fits(self, a: cython.int, b: cython.int) -> cython.bint:
+        """Whether a segment from vertex a to vertex b would meet live segments at shared vertices only."""
+        ax: cython.longlong = self.vertices[a, 0]
+        ay: cython.longlong = self.vertices[a, 1]
+        bx: cython.longlong = self.vertices[b, 0]
+        by: cython.longlong = self.vertices[b, 1]
+        cx: cython.longlong
+        cy: cython.longlong
+        dx: cython.longlong
+        dy: cython.longlong
+        row: cython.longlong
+        column: cython.int
+        entry: cython.int
+        s: cython.int
+        c: cython.int
+        d: cython.int
+        swap: cython.int
+        at_c: cython.int
+        at_d: cython.int
+        at_a: cython.int
+        at_b: cython.int
+        span = cython.declare(cython.int[2])
+        if ax == bx and ay == by:
+            return False
+        for row in range(min(ay, by) // self._cell, max(ay, by) // self._cell + 1):
+            self._span(row, ax, ay, bx, by, span)
+            for column in range(span[0], span[1] + 1):
+                entry = self._head[row, column]
+                while entry >= 0:
+                    s = self._entry[entry, 0]
+                    entry = self._entry[entry, 1]
+                    if self._ignored[s] == self._stamp:
+                        continue
+                    c = self.ends[s, 0]
+                    d = self.ends[s, 1]
+                    if d in (a, b):
+                        swap = c
+                        c = d
+                        d = swap
+                    cx = self.vertices[c, 0]
+                    cy = self.vertices[c, 1]
+                    dx = self.vertices[d, 0]
+                    dy = self.vertices[d, 1]
+                    if c in (a, b):
+                        if d in (a, b):
+                            return False
+                        if _turn(ax, ay, bx, by, dx, dy) != 0:
+                            continue
+                        if c == a and (bx - ax) * (dx - ax) + (by - ay) * (dy - ay) > 0:
+                            return False
+                        if c == b and (ax - bx) * (dx - bx) + (ay - by) * (dy - by) > 0:
+                            return False
+                        continue
+                    if max(ax, bx) < min(cx, dx) or max(cx, dx) < min(ax, bx):
+                        continue
+                    if max(ay, by) < min(cy, dy) or max(cy, dy) < min(ay, by):
+                        continue
+                    at_c = _turn(ax, ay, bx, by, cx, cy)
+                    at_d = _turn(ax, ay, bx, by, dx, dy)
+                    if at_c * at_d > 0:
+                        continue
+                    at_a = _turn(cx, cy, dx, dy, ax, ay)
+                    at_b = _turn(cx, cy, dx, dy, bx, by)
+                    if at_a * at_b > 0:
+                        continue
+                    return False
+        return True
+
+
+def insert(planar: Planar, ends: cython.int[:, ::1]) -> None:
+    """Add those segments, in order, that fit; `planar.live` tells which."""
+    s: cython.Py_ssize_t
+    for s in range(ends.shape[0]):
+        if planar.fits(ends[s, 0], ends[s, 1]):
+            planar.add(s)
+
+
+def shorten(
+    planar: Planar,
+    path: cython.int[::1],
+    segment: cython.int[::1],
+    tolerance: cython.double,
+    stack: cython.int[:, ::1],
+    kept: cython.uchar[::1],
+) -> None:
+    """Replace runs of a path by single segments wherever these stay within tolerance and fit.
+
+    Douglas and Peucker's division, where a run is also divided at its farthest vertex if its
+    shortcut would touch another segment, down to the path's own segments, which are live already.
+
+    path: (n,) vertices; segment: (n − 1,) the live segment from each vertex to the next; the
+    first segment of a run becomes its shortcut. kept: (n,) filled, 1 where a vertex stays.
+    stack: (n, 2) room to work in. tolerance: in the grid's units.
+    """
+    depth: cython.Py_ssize_t = 1
+    first: cython.int
+    last: cython.int
+    middle: cython.int
+    k: cython.int
+    ax: cython.double
+    ay: cython.double
+    dx: cython.double
+    dy: cython.double
+    px: cython.double
+    py: cython.double
+    length: cython.double
+    along: cython.double
+    deviation: cython.double
+    worst: cython.double
+    stack[0, 0] = 0
+    stack[0, 1] = path.shape[0] - 1
+    kept[0] = kept[path.shape[0] - 1] = 1
+    while depth > 0:
+        depth -= 1
+        first = stack[depth, 0]
+        last = stack[depth, 1]
+        if last - first < 2:
+            continue
+        ax = planar.vertices[path[first], 0]
+        ay = planar.vertices[path[first], 1]
+        dx = planar.vertices[path[last], 0] - ax
+        dy = planar.vertices[path[last], 1] - ay
+        length = dx * dx + dy * dy
+        worst = -1
+        middle = (first + last) // 2
+        for k in range(first + 1, last):
+            px = planar.vertices[path[k], 0] - ax
+            py = planar.vertices[path[k], 1] - ay
+            along = (px * dx + py * dy) / length if length > 0 else 0.0
+            along = min(1.0, max(0.0, along))
+            px -= along * dx
+            py -= along * dy
+            deviation = px * px + py * py
+            if deviation > worst:
+                worst = deviation
+                middle = k
+        if worst <= tolerance * tolerance:
+            planar.ignore_none()
+            for k in range(first, last):
+                planar.ignore(segment[k])
+            if planar.fits(path[first], path[last]):
+                for k in range(first, last):
+                    planar.remove(segment[k])
+                planar.ends[segment[first], 0] = path[first]
+                planar.ends[segment[first], 1] = path[last]
+                planar.add(segment[first])
+                planar.ignore_none()
+                continue
+            planar.ignore_none()
+        kept[middle] = 1
+        stack[depth, 0] = first
+        stack[depth, 1] = middle
+        stack[depth + 1, 0] = middle
+        stack[depth + 1, 1] = last
+        depth += 2
+
+
+def move(
+    planar: Planar,
+    vertex: cython.int,
+    before: cython.int,
+    after: cython.int,
+    x: cython.longlong,
+    y: cython.longlong,
+) -> cython.bint:
+    """Move a vertex of two live segments, `before` and `after`, to (x, y) if both still fit there."""
+    old_x: cython.longlong = planar.vertices[vertex, 0]
+    old_y: cython.longlong = planar.vertices[vertex, 1]
+    other_before: cython.int = planar.ends[before, 0] + planar.ends[before, 1] - vertex
+    other_after: cython.int = planar.ends[after, 0] + planar.ends[after, 1] - vertex
+    planar.remove(before)
+    planar.remove(after)
+    planar.vertices[vertex, 0] = x
+    planar.vertices[vertex, 1] = y
+    fitting: cython.bint = planar.fits(other_before, vertex)
+    if fitting:
+        planar.add(before)
+        fitting = planar.fits(vertex, other_after)
+        if not fitting:
+            planar.remove(before)
+    if not fitting:
+        planar.vertices[vertex, 0] = old_x
+        planar.vertices[vertex, 1] = old_y
+        planar.add(before)
+    planar.add(after)
+    return fitting

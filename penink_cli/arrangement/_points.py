@@ -1,0 +1,354 @@
+# cython: language_level=3, boundscheck=False, wraparound=False, cdivision=True
+"""Compiled: sub-pixel edge points and their links to neighbours. See gradient.py and chains.py."""
+
+import cython
+
+COMPILED = cython.compiled
+
+if cython.compiled:
+    from cython.cimports.libc.math import fabs, log, sqrt
+else:
+    from math import fabs, log, sqrt
+
+
+@cython.cfunc
+@cython.inline
+@cython.nogil
+@cython.exceptval(check=False)
+def _along_x(smooth: cython.float[:, ::1], i: cython.int, j: cython.int) -> cython.double:
+    return 0.5 * (smooth[i, j + 1] - smooth[i, j - 1])
+
+
+@cython.cfunc
+@cython.inline
+@cython.nogil
+@cython.exceptval(check=False)
+def _along_y(smooth: cython.float[:, ::1], i: cython.int, j: cython.int) -> cython.double:
+    return 0.5 * (smooth[i + 1, j] - smooth[i - 1, j])
+
+
+def locate(smooth: cython.float[:, ::1], pixel: cython.int[:, ::1], out: cython.double[:, ::1]) -> None:
+    """Place each edge pixel's point on the ridge of the gradient.
+
+    Along the axis nearer to the gradient, the slope of three neighbouring pixels in the
+    gradient's direction is taken for a Gaussian, exact for a blurred step: a parabola through
+    the logarithms has its vertex on the edge, and its curvature tells the edge's width. (A
+    parabola through the slopes themselves pulls the point to the pixel's centre by up to 0.05.)
+
+    pixel: (n, 2) int32, moved to the pixel that the point was taken from.
+    out: (n, 5) x, y, gradient along x and y, width; a width of -1 drops the point.
+    """
+    n: cython.Py_ssize_t = pixel.shape[0]
+    height: cython.int = smooth.shape[0]
+    width: cython.int = smooth.shape[1]
+    k: cython.Py_ssize_t
+    step: cython.int
+    i: cython.int
+    j: cython.int
+    di: cython.int
+    dj: cython.int
+    gx: cython.double
+    gy: cython.double
+    magnitude: cython.double
+    nx: cython.double
+    ny: cython.double
+    a: cython.double
+    b: cython.double
+    c: cython.double
+    bend: cython.double
+    offset: cython.double
+    cosine: cython.double
+    with cython.nogil:
+        for k in range(n):
+            i = pixel[k, 0]
+            j = pixel[k, 1]
+            out[k, 4] = -1
+            for step in range(2):  # a second look where the ridge lies nearer to the next pixel
+                if i < 1 or j < 1 or i > height - 2 or j > width - 2:
+                    break
+                gx = _along_x(smooth, i, j)
+                gy = _along_y(smooth, i, j)
+                magnitude = sqrt(gx * gx + gy * gy)
+                if magnitude <= 0:
+                    break
+                nx = gx / magnitude
+                ny = gy / magnitude
+                di = 0 if fabs(gx) >= fabs(gy) else 1
+                dj = 1 - di
+                cosine = fabs(nx) if dj else fabs(ny)
+                offset = 0.0
+                out[k, 4] = 0
+                if di <= i - 1 and i + 1 + di <= height - 1 and dj <= j - 1 and j + 1 + dj <= width - 1:
+                    a = nx * _along_x(smooth, i - di, j - dj) + ny * _along_y(smooth, i - di, j - dj)
+                    c = nx * _along_x(smooth, i + di, j + dj) + ny * _along_y(smooth, i + di, j + dj)
+                    b = magnitude
+                    if a > 0.05 * b and c > 0.05 * b:
+                        a = log(a / b)
+                        c = log(c / b)
+                        bend = -(a + c)
+                        if bend > 1e-3:
+                            offset = (c - a) / (2 * bend)
+                            out[k, 4] = cosine / sqrt(bend)
+                    else:  # a neighbour falls the other way: a line or a corner, too sharp for a Gaussian
+                        bend = 2 * b - a - c
+                        offset = (c - a) / (2 * bend) if bend > 0 else 0.0
+                if fabs(offset) > 0.75 and step == 0:
+                    i += di if offset > 0 else -di
+                    j += dj if offset > 0 else -dj
+                    continue
+                offset = min(1.0, max(-1.0, offset))
+                pixel[k, 0] = i
+                pixel[k, 1] = j
+                out[k, 0] = j + 0.5 + offset * dj
+                out[k, 1] = i + 0.5 + offset * di
+                out[k, 2] = gx
+                out[k, 3] = gy
+                break
+
+
+def thin(
+    pixel: cython.int[:, ::1],
+    position: cython.double[:, ::1],
+    index: cython.int[:, ::1],
+    keep: cython.uchar[::1],
+    spacing: cython.double,
+) -> None:
+    """Of two points closer than spacing (at most one pixel) keep the one nearer to its own pixel's centre.
+
+    Where an edge runs diagonally two pixels may name the same place on the ridge, and a link
+    between them would point anywhere. keep: (n,) ones, cleared for points that go; index: (h, w)
+    a point of each pixel or -1, cleared likewise.
+    """
+    n: cython.Py_ssize_t = pixel.shape[0]
+    k: cython.int
+    other: cython.int
+    i: cython.int
+    j: cython.int
+    dx: cython.double
+    dy: cython.double
+    with cython.nogil:
+        for k in range(n):
+            for i in range(max(0, pixel[k, 0] - 2), min(index.shape[0], pixel[k, 0] + 3)):
+                for j in range(max(0, pixel[k, 1] - 2), min(index.shape[1], pixel[k, 1] + 3)):
+                    other = index[i, j]
+                    if other < 0 or other == k or not keep[k]:
+                        continue
+                    dx = position[other, 0] - position[k, 0]
+                    dy = position[other, 1] - position[k, 1]
+                    if dx * dx + dy * dy >= spacing * spacing:
+                        continue
+                    dx = fabs(position[k, 0] - pixel[k, 1] - 0.5) + fabs(position[k, 1] - pixel[k, 0] - 0.5)
+                    dy = fabs(position[other, 0] - j - 0.5) + fabs(position[other, 1] - i - 0.5)
+                    if dx < dy or (dx == dy and k < other):
+                        keep[other] = 0
+                        index[i, j] = -1
+                    else:
+                        keep[k] = 0
+                        index[pixel[k, 0], pixel[k, 1]] = -1
+
+
+def link(
+    pixel: cython.int[:, ::1],
+    position: cython.double[:, ::1],
+    gradient: cython.double[:, ::1],
+    index: cython.int[:, ::1],
+    following: cython.int[::1],
+    preceding: cython.int[::1],
+) -> None:
+    """Give each point its nearest fellow forward and backward along the edge (dark side on the left).
+
+    Two points may be linked if their gradients agree within 90 degrees and each lies ahead of
+    the other's normal; the nearest in the 5 x 5 pixels around is taken (Devernay 1995), and only
+    what both sides choose is a link, so each point has at most one of each kind.
+
+    index: (h, w) -1, or the point of that pixel. following, preceding: (n,) filled, -1 for none.
+    """
+    n: cython.Py_ssize_t = pixel.shape[0]
+    height: cython.int = index.shape[0]
+    width: cython.int = index.shape[1]
+    k: cython.Py_ssize_t
+    other: cython.int
+    i: cython.int
+    j: cython.int
+    ahead: cython.double
+    other_ahead: cython.double
+    dx: cython.double
+    dy: cython.double
+    distance: cython.double
+    best_forward: cython.double
+    best_backward: cython.double
+    forward: cython.int
+    backward: cython.int
+    with cython.nogil:
+        for k in range(n):
+            best_forward = best_backward = 1e9
+            forward = backward = -1
+            for i in range(max(0, pixel[k, 0] - 2), min(height, pixel[k, 0] + 3)):
+                for j in range(max(0, pixel[k, 1] - 2), min(width, pixel[k, 1] + 3)):
+                    other = index[i, j]
+                    if other < 0 or other == k:
+                        continue
+                    if gradient[k, 0] * gradient[other, 0] + gradient[k, 1] * gradient[other, 1] <= 0:
+                        continue
+                    dx = position[other, 0] - position[k, 0]
+                    dy = position[other, 1] - position[k, 1]
+                    distance = dx * dx + dy * dy
+                    ahead = gradient[k, 0] * dy - gradient[k, 1] * dx
+                    other_ahead = gradient[other, 0] * dy - gradient[other, 1] * dx
+                    if ahead > 0 and other_ahead > 0 and distance < best_forward:
+                        best_forward = distance
+                        forward = other
+                    elif ahead < 0 and other_ahead < 0 and distance < best_backward:
+                        best_backward = distance
+                        backward = other
+            following[k] = forward
+            preceding[k] = backward
+        for k in range(n):
+            other = following[k]
+            if other >= 0 and preceding[other] != k:
+                following[k] = -1
+        for k in range(n):
+            other = preceding[k]
+            if other >= 0 and following[other] != k:
+                preceding[k] = -1
+
+
+def follow(
+    following: cython.int[::1], preceding: cython.int[::1], order: cython.int[::1], first: cython.int[::1]
+) -> cython.Py_ssize_t:
+    """List the points chain by chain: open chains first by their first point, then rings.
+
+    order: (n,) filled with points; first: (n + 1,) filled with offsets into it. A ring's first
+    point keeps its `preceding`. Returns the number of chains.
+    """
+    n: cython.Py_ssize_t = following.shape[0]
+    k: cython.Py_ssize_t
+    at: cython.int
+    beyond: cython.int
+    filled: cython.Py_ssize_t = 0
+    chains: cython.Py_ssize_t = 0
+    ring: cython.int
+    with cython.nogil:
+        for ring in range(2):
+            for k in range(n):
+                if following[k] == -2 or (ring == 0 and preceding[k] >= 0):
+                    continue
+                first[chains] = filled
+                chains += 1
+                at = k
+                while at >= 0:
+                    order[filled] = at
+                    filled += 1
+                    beyond = following[at]
+                    following[at] = -2  # taken
+                    at = beyond if beyond >= 0 and following[beyond] != -2 else -1
+    first[chains] = filled
+    return chains
+
+
+def reach(
+    ends: cython.int[::1],
+    direction: cython.double[:, ::1],
+    position: cython.double[:, ::1],
+    pixel: cython.int[:, ::1],
+    index: cython.int[:, ::1],
+    chain: cython.int[::1],
+    place: cython.int[::1],
+    radius: cython.double,
+    target: cython.int[::1],
+    cost: cython.double[::1],
+) -> None:
+    """For each end of a chain, the point ahead of it that it most likely meets.
+
+    ends: (n,) points; direction: (n, 2) unit vectors out of the chain. index: (h, w) point of each
+    pixel or -1. chain, place: the chain of each point (-1: none) and its place along it; an end
+    does not meet its own neighbourhood. target: (n,) filled, -1 for none; cost: (n,) filled, pixels.
+    """
+    height: cython.int = index.shape[0]
+    width: cython.int = index.shape[1]
+    window: cython.int = cython.cast(cython.int, radius) + 2
+    n: cython.Py_ssize_t = ends.shape[0]
+    k: cython.Py_ssize_t
+    e: cython.int
+    i: cython.int
+    j: cython.int
+    other: cython.int
+    dx: cython.double
+    dy: cython.double
+    distance: cython.double
+    cosine: cython.double
+    price: cython.double
+    with cython.nogil:
+        for k in range(n):
+            e = ends[k]
+            target[k] = -1
+            cost[k] = 1e9
+            for i in range(max(0, pixel[e, 0] - window), min(height, pixel[e, 0] + window + 1)):
+                for j in range(max(0, pixel[e, 1] - window), min(width, pixel[e, 1] + window + 1)):
+                    other = index[i, j]
+                    if other < 0 or other == e or chain[other] < 0:
+                        continue
+                    if chain[other] == chain[e] and abs(place[other] - place[e]) < 4 * window:
+                        continue
+                    dx = position[other, 0] - position[e, 0]
+                    dy = position[other, 1] - position[e, 1]
+                    distance = sqrt(dx * dx + dy * dy)
+                    if distance > radius:
+                        continue
+                    cosine = (dx * direction[k, 0] + dy * direction[k, 1]) / distance if distance > 0 else 1.0
+                    if cosine < 0.2 and distance > 1.5:
+                        continue
+                    price = distance * (2 - cosine)
+                    if price < cost[k]:
+                        cost[k] = price
+                        target[k] = other
+
+
+def trace(
+    start: cython.int[::1],
+    degree: cython.int[::1],
+    first: cython.int[::1],
+    neighbour: cython.int[::1],
+    via: cython.int[::1],
+    used: cython.uchar[::1],
+    path: cython.int[::1],
+    segment: cython.int[::1],
+    offset: cython.int[::1],
+) -> cython.Py_ssize_t:
+    """Cut a graph into paths that end at nodes (vertices not of degree 2), then into rings.
+
+    start: vertices in the order to start from, nodes first. neighbour, via: the vertices and
+    segments around vertex v are those from first[v] to first[v + 1]. used: (segments,) zeros.
+    path, segment: filled, path k in offset[k] : offset[k + 1], one vertex more than segments (the
+    last place of `segment` in each path is -1). Returns the number of paths.
+    """
+    filled: cython.Py_ssize_t = 0
+    paths: cython.Py_ssize_t = 0
+    k: cython.Py_ssize_t
+    v: cython.int
+    at: cython.int
+    e: cython.int
+    way: cython.int
+    with cython.nogil:
+        for k in range(start.shape[0]):
+            v = start[k]
+            for e in range(first[v], first[v + 1]):
+                if used[via[e]]:
+                    continue
+                offset[paths] = filled
+                paths += 1
+                way = e
+                path[filled] = v
+                while True:
+                    used[via[way]] = 1
+                    segment[filled] = via[way]
+                    filled += 1
+                    at = neighbour[way]
+                    path[filled] = at
+                    if degree[at] != 2 or at == v:
+                        break
+                    way = first[at] if not used[via[first[at]]] else first[at] + 1
+                segment[filled] = -1
+                filled += 1
+        offset[paths] = filled
+    return paths

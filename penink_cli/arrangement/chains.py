@@ -1,0 +1,117 @@
+"""Edge points linked into chains, and the chains' loose ends joined to what they stop short of."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from penink_cli.arrangement import _points
+from penink_cli.arrangement.gradient import EdgePoints
+from penink_cli.model import Floats
+
+Ints32 = npt.NDArray[np.int32]
+
+
+@dataclass(frozen=True, eq=False)
+class Chains:
+    """Runs of edge points, one after the other along an edge.
+
+    order: (p,) edge points, chain after chain; first: (c + 1,) offsets into it.
+    ring: (c,) whether the last point is linked back to the first.
+    """
+
+    order: Ints32
+    first: Ints32
+    ring: npt.NDArray[np.bool_]
+
+    def __len__(self) -> int:
+        return len(self.ring)
+
+    @property
+    def owner(self) -> Ints32:
+        """The chain (p,) of each entry of `order`."""
+        return np.repeat(np.arange(len(self), dtype=np.int32), np.diff(self.first))
+
+    def where(self, wanted: npt.NDArray[np.bool_]) -> Chains:
+        """The chains for which wanted (c,) holds."""
+        lengths = np.diff(self.first)[wanted]
+        order = self.order[np.repeat(wanted, np.diff(self.first))]
+        return Chains(order, np.concatenate([[0], np.cumsum(lengths)]).astype(np.int32), self.ring[wanted])
+
+
+def link_chains(points: EdgePoints) -> Chains:
+    """Link each edge point to the next along its edge (Devernay 1995); singles are left out."""
+    n = len(points.pixel)
+    following, preceding = np.empty(n, np.int32), np.empty(n, np.int32)
+    _points.link(points.pixel, points.position, points.gradient, pixel_index(points), following, preceding)
+    order, first = np.empty(n, np.int32), np.zeros(n + 1, np.int32)
+    count = _points.follow(following, preceding, order, first)
+    first = first[: count + 1]
+    ring = preceding[order[first[:-1]]] >= 0 if count else np.zeros(0, bool)
+    chains = Chains(order, first, ring)
+    return chains.where(np.diff(first) > 1)
+
+
+def pixel_index(points: EdgePoints) -> Ints32:
+    """The point (h, w) of each pixel, -1 where there is none."""
+    index = np.full(points.shape, -1, np.int32)
+    index[points.pixel[:, 0], points.pixel[:, 1]] = np.arange(len(points.pixel), dtype=np.int32)
+    return index
+
+
+def chain_lengths(chains: Chains, position: Floats) -> Floats:
+    """Length (c,) of each chain in pixels, along its points."""
+    if not len(chains):
+        return np.zeros(0)
+    steps = np.zeros(len(chains.order))
+    steps[1:] = np.hypot(*np.diff(position[chains.order], axis=0).T)
+    steps[chains.first[:-1]] = 0
+    return np.add.reduceat(steps, chains.first[:-1])
+
+
+def join_ends(points: EdgePoints, chains: Chains, radius: float) -> tuple[Ints32, Floats, Ints32]:
+    """Join loose ends that stop within radius pixels of another chain, of an end, or of the frame.
+
+    Returns:
+        joins (j, 2) of edge points, cheapest first; places (f, 2) x, y on the frame; and the
+        edge point (f,) that reaches each place.
+
+    """
+    height, width = points.shape
+    loose = np.flatnonzero(~chains.ring)
+    ends = np.concatenate([chains.order[chains.first[loose]], chains.order[chains.first[loose + 1] - 1]])
+    length = np.diff(chains.first)[loose]
+    inward = np.minimum(6, length - 1)
+    near = np.minimum(1, inward - 1)
+    heads = points.position[chains.order[chains.first[loose] + near]]
+    tails = points.position[chains.order[chains.first[loose + 1] - 1 - near]]
+    from_heads = points.position[chains.order[chains.first[loose] + inward]]
+    from_tails = points.position[chains.order[chains.first[loose + 1] - 1 - inward]]
+    direction = np.concatenate([heads - from_heads, tails - from_tails])
+    direction /= np.maximum(1e-9, np.hypot(*direction.T))[:, None]
+
+    position = points.position[ends]
+    gap = np.stack([position[:, 0], width - position[:, 0], position[:, 1], height - position[:, 1]])
+    outward = np.stack([-direction[:, 0], direction[:, 0], -direction[:, 1], direction[:, 1]])
+    travel = np.where(outward > 0.2, gap / np.maximum(outward, 0.2), np.inf)
+    side = np.argmin(travel, axis=0)
+    travel = travel[side, np.arange(len(ends))]
+    at_frame = travel <= max(2.5, radius)
+    places = np.clip(position + direction * np.where(at_frame, travel, 0)[:, None], 0, (width, height))
+    for k, (axis, value) in enumerate([(0, 0), (0, width), (1, 0), (1, height)]):
+        places[at_frame & (side == k), axis] = value
+
+    place = np.zeros(len(points.pixel), np.int32)
+    chain = np.full(len(points.pixel), -1, np.int32)
+    chain[chains.order] = chains.owner
+    place[chains.order] = np.arange(len(chains.order), dtype=np.int32)
+    target, cost = np.empty(len(ends), np.int32), np.empty(len(ends))
+    _points.reach(
+        ends, direction, points.position, points.pixel, pixel_index(points), chain, place, radius, target, cost
+    )
+    to_frame = at_frame & (travel < cost)
+    meeting = np.flatnonzero((target >= 0) & ~to_frame)
+    meeting = meeting[np.argsort(cost[meeting], kind="stable")]
+    return np.column_stack([ends[meeting], target[meeting]]), places[to_frame], ends[to_frame]

@@ -1,0 +1,121 @@
+"""Where the grey changes fastest: edge points at sub-pixel positions, after Canny.
+
+The paper finds its discontinuities with Canny's detector (section 3, reference [5]).
+scikit-image says which pixels hold a ridge of the gradient; this module, the only one
+that imports it, then places a point on the ridge to a fraction of a pixel.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from penink_cli.arrangement import _points
+from penink_cli.model import Floats
+
+Ints32 = npt.NDArray[np.int32]
+
+_SOBEL_GAIN = 8.0  # scikit-image thresholds the sum of Sobel's weights, not their mean
+_SPACING = 0.5  # pixels; nearer points are one place found twice
+_BAND_ROWS = 256  # 12 megapixels in one piece take 1.6 s and 430 MB, in bands that stay in cache 0.5 s
+
+
+@dataclass(frozen=True, eq=False)
+class EdgePoints:
+    """Points on ridges of the gradient, in raster order of the pixels that hold them.
+
+    pixel: (n, 2) int32 row, column.
+    position: (n, 2) x, y in the image frame, within one pixel of the pixel's centre.
+    gradient: (n, 2) grey per pixel of the smoothed image, along x and y.
+    width: (n,) standard deviation (pixels) of the Gaussian whose shape the gradient has across
+        the edge, smoothing included; 0 where the ridge is too flat or too noisy to tell.
+    """
+
+    shape: tuple[int, int]
+    pixel: Ints32
+    position: Floats
+    gradient: Floats
+    width: Floats
+
+    @property
+    def magnitude(self) -> Floats:
+        """Steepness (n,), grey per pixel."""
+        return np.hypot(self.gradient[:, 0], self.gradient[:, 1])
+
+
+def noise_level(grey: npt.NDArray[np.floating]) -> float:
+    """Standard deviation of the noise in a picture (h, w), in its own grey units.
+
+    The median of the absolute response to [[1, -2, 1], [-2, 4, -2], [1, -2, 1]] (Immerkær 1996),
+    which is blind to straight edges; the median ignores corners and texture that covers
+    less than half of the picture.
+    """
+    height, width = grey.shape
+    if height < 3 or width < 3:
+        return 0.0
+    counts = np.zeros(4096, np.int64)
+    scale = 4096 / 2.0
+    for top in range(0, height - 2, _BAND_ROWS):
+        band = np.asarray(grey[top : min(height, top + _BAND_ROWS + 2)], np.float32)
+        across = band[:, :-2] - 2 * band[:, 1:-1] + band[:, 2:]
+        response = np.abs(across[:-2] - 2 * across[1:-1] + across[2:])
+        counts += np.bincount(np.minimum((response * scale).astype(np.int32), 4095).ravel(), minlength=4096)
+    cumulated = np.cumsum(counts)
+    half = cumulated[-1] / 2
+    k = int(np.searchsorted(cumulated, half))
+    below = cumulated[k - 1] if k else 0
+    median = (k + (half - below) / max(1, counts[k])) / scale
+    return float(median / (6 * 0.6745))
+
+
+def edge_points(grey: npt.NDArray[np.floating], sigma: float, low: float) -> EdgePoints:
+    """Find the points where the smoothed gradient is largest along its own direction.
+
+    Args:
+        grey: (h, w), 0 … 1.
+        sigma: smoothing in pixels.
+        low: least gradient, grey per pixel of the smoothed image.
+
+    """
+    from scipy.ndimage import gaussian_filter
+    from skimage.feature import canny
+
+    height, width = grey.shape
+    halo = int(4 * sigma + 0.5) + 4
+    found = []
+    for top in range(0, height, _BAND_ROWS):
+        first, last = max(0, top - halo), min(height, top + _BAND_ROWS + halo)
+        band = np.ascontiguousarray(grey[first:last], np.float32)
+        threshold = low * _SOBEL_GAIN
+        mask = canny(band, sigma, threshold, threshold, mode="nearest")
+        mask[: top - first] = False
+        mask[top - first + _BAND_ROWS :] = False
+        rows, columns = np.nonzero(mask)
+        if not len(rows):
+            continue
+        smooth = gaussian_filter(band, sigma, mode="nearest")
+        pixel = np.column_stack([rows, columns]).astype(np.int32)
+        values = np.zeros((len(pixel), 5))
+        _points.locate(smooth, pixel, values)
+        values[:, 1] += first
+        pixel[:, 0] += first
+        keep = values[:, 4] >= 0
+        found.append((pixel[keep], values[keep]))
+    pixel = np.concatenate([p for p, _ in found]) if found else np.zeros((0, 2), np.int32)
+    values = np.concatenate([v for _, v in found]) if found else np.zeros((0, 5))
+    index = np.full((height, width), -1, np.int32)
+    index[pixel[:, 0], pixel[:, 1]] = np.arange(len(pixel), dtype=np.int32)
+    keep = np.zeros(len(pixel), np.uint8)
+    keep[index[pixel[:, 0], pixel[:, 1]]] = 1
+    _points.thin(pixel, np.ascontiguousarray(values[:, :2]), index, keep, _SPACING)
+    keep = keep.astype(bool)
+    pixel, values = pixel[keep], values[keep]
+    return EdgePoints(
+        (height, width),
+        pixel,
+        np.ascontiguousarray(values[:, :2]),
+        np.ascontiguousarray(values[:, 2:4]),
+        np.ascontiguousarray(values[:, 4]),
+    )

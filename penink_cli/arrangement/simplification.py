@@ -1,0 +1,58 @@
+"""Chains to few long segments, and never two that cross."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+import numpy.typing as npt
+
+from penink_cli.arrangement import _planar, _points
+from penink_cli.arrangement._planar import Planar
+from penink_cli.arrangement.planar import UNIT
+
+Ints32 = npt.NDArray[np.int32]
+
+
+def paths(ends: Ints32, live: npt.NDArray[np.bool_], vertex_count: int) -> tuple[Ints32, Ints32, Ints32]:
+    """Cut the live segments of a graph into paths between nodes, the vertices not of degree 2.
+
+    Args:
+        ends: (m, 2) vertices of each segment.
+        live: (m,).
+        vertex_count: number of vertices.
+
+    Returns:
+        vertices and segments path after path, and the offsets of the paths (one more than paths).
+        The last entry of each path's segments is -1. A ring comes back to its first vertex.
+
+    """
+    segments = np.flatnonzero(live).astype(np.int32)
+    a, b = ends[segments, 0], ends[segments, 1]
+    tail = np.concatenate([a, b])
+    by_vertex = np.argsort(tail, kind="stable")
+    neighbour = np.concatenate([b, a])[by_vertex].astype(np.int32)
+    via = np.concatenate([segments, segments])[by_vertex].astype(np.int32)
+    degree = np.bincount(tail, minlength=vertex_count).astype(np.int32)
+    first = np.concatenate([[0], np.cumsum(degree)]).astype(np.int32)
+    present = np.flatnonzero(degree)
+    start = np.concatenate([present[degree[present] != 2], present[degree[present] == 2]]).astype(np.int32)
+    room = 2 * len(segments) + 1
+    path, segment, offset = np.empty(room, np.int32), np.empty(room, np.int32), np.zeros(room, np.int32)
+    used = np.zeros(len(ends), np.uint8)
+    count = _points.trace(start, degree, first, neighbour, via, used, path, segment, offset)
+    return path[: offset[count]], segment[: offset[count]], offset[: count + 1]
+
+
+def simplify(planar: Planar, tolerance: float) -> None:
+    """Replace the arrangement's paths by segments within tolerance (pixels) of them.
+
+    Nodes stay where they are. A shortcut that would touch another edge is not taken: the path
+    is then divided further, at worst down to its own segments.
+    """
+    vertices, ends = np.asarray(planar.vertices), np.asarray(planar.ends)
+    path, segment, offset = paths(ends, np.asarray(planar.live)[: len(ends)].astype(bool), len(vertices))
+    kept = np.zeros(len(path), np.uint8)
+    stack = np.zeros((len(path) + 2, 2), np.int32)
+    for first, last in pairwise(offset.tolist()):
+        _planar.shorten(planar, path[first:last], segment[first : last - 1], tolerance / UNIT, stack, kept[first:last])

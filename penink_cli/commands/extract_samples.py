@@ -1,0 +1,48 @@
+"""``penink extract-samples``."""
+
+from __future__ import annotations
+
+import click
+
+from penink_cli.commands.inputs import only_one_standard_input, read_edges, read_photo
+from penink_cli.options import Finite, edges_option, filter_options
+from penink_cli.streams import writing
+
+
+@click.command(name="extract-samples")
+@filter_options
+@edges_option(required=True)
+@click.option(
+    "--margin",
+    type=Finite(least=0, most=16),
+    help="How far from an edge the photo's blur reaches, pixels.  [default: by the photo]",
+)
+@click.option("--maxval", type=click.IntRange(1, 65535), default=255, help="White of the PGM.  [default: 255]")
+def extract_samples(
+    file: str | None,
+    output: str | None,
+    max_pixels: int,
+    quiet: bool,
+    edges_file: str,
+    margin: float | None,
+    maxval: int,
+) -> None:
+    """Take grey samples that no edge has contaminated.
+
+    A pixel on an edge, or so near that the photo's blur reaches it, is a mixture of both sides. It is
+    replaced by an extrapolation from pixels that can be reached without crossing an edge.
+
+    \b
+    penink extract-samples -e photo.edges.json photo.png -o photo.samples.pgm
+    """
+    from penink_cli.formats import pgm
+    from penink_cli.model import GreyImage
+    from penink_cli.reconstruction import extraction
+
+    only_one_standard_input(file, edges_file)
+    edges = read_edges(edges_file)
+    assert edges is not None
+    photo = read_photo(file, max_pixels)
+    samples = extraction.extract_samples(photo.grey, edges, margin)
+    with writing(output) as out:
+        pgm.write(out, GreyImage.from_grey(samples, maxval))

@@ -1,0 +1,57 @@
+"""Edges from pictures: where they are, how they are joined, and that they never cross."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from penink_cli.arrangement.detection import detect_edges
+from tests.arrangement.crossings import crossings
+
+
+def disc(size=64, centre=(31.3, 30.8), radius=17.4, low=0.2, high=0.8, blur=0.7):
+    """A disc rendered with 8 x 8 points a pixel, then blurred."""
+    from scipy.ndimage import gaussian_filter
+
+    at = (np.arange(size * 8) + 0.5) / 8
+    inside = (at[None] - centre[0]) ** 2 + (at[:, None] - centre[1]) ** 2 < radius**2
+    fine = np.where(inside, high, low)
+    return gaussian_filter(fine.reshape(size, 8, size, 8).mean(axis=(1, 3)), blur)
+
+
+def test_a_disc_is_one_ring_on_its_rim():
+    edges = detect_edges(disc())
+    degree = np.bincount(edges.edges.ravel(), minlength=len(edges.vertices))
+    assert (degree == 2).all()
+    a, b = edges.vertices[edges.edges[:, 0]], edges.vertices[edges.edges[:, 1]]
+    for t in (0, 0.25, 0.5, 0.75):
+        distance = np.hypot(*(a + t * (b - a) - (31.3, 30.8)).T) - 17.4
+        assert np.abs(distance).max() < 0.45
+
+
+def test_strength_is_the_grey_step():
+    edges = detect_edges(disc(low=0.3, high=0.7))
+    assert np.median(edges.strength) == pytest.approx(0.4, abs=0.06)
+
+
+def test_edges_run_to_the_frame():
+    grey = np.full((40, 60), 0.2)
+    grey[:, 25:] = 0.7
+    edges = detect_edges(grey)
+    assert edges.vertices[:, 1].min() == 0 and edges.vertices[:, 1].max() == 40
+    assert np.abs(edges.vertices[:, 0] - 25).max() < 0.1
+
+
+@pytest.mark.parametrize("shape", [(1, 1), (1, 9), (9, 1), (2, 2), (3, 3), (5, 4)])
+def test_tiny_and_flat_pictures_have_no_edges_that_fail(shape):
+    assert len(detect_edges(np.full(shape, 0.5)).edges) == 0
+    detect_edges(np.random.default_rng(1).random(shape))
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.integers(0, 2**32 - 1), st.sampled_from([0.02, 0.1, 0.3]), st.sampled_from([0.1, 0.5, 1.0, 3.0]))
+def test_edges_never_cross(seed, high, tolerance):
+    random = np.random.default_rng(seed)
+    grey = random.random((random.integers(3, 40), random.integers(3, 40)))
+    edges = detect_edges(grey, sigma=0.6, high=high, tolerance=tolerance, min_length=2)
+    assert not crossings(edges)
