@@ -3,6 +3,7 @@
 #   make            virtual environment, install, samples/out/*.ps and *.preview.png
 #   make test       the tests            make lint    ruff and mypy
 #   make bench      the measurements     make dist    wheel and source distribution
+#   make check-dist both, installed in an empty environment
 #   make clean      remove what make made
 #
 # PYTHON is the interpreter to build the environment with, VENV the environment's folder.
@@ -15,7 +16,7 @@ INSTALLED := $(VENV)/.installed
 KERNELS   := $(shell sed -n 's/^sources = \["\(.*\)"\]/\1/p' pyproject.toml)
 BENCHES   := $(patsubst tests/benchmarks/%.py,tests.benchmarks.%,$(filter-out %/__init__.py %/_%,$(wildcard tests/benchmarks/*.py)))
 
-.PHONY: all install samples test lint bench dist clean needs needs-python
+.PHONY: all install samples test lint bench dist check-dist clean needs needs-python
 .DELETE_ON_ERROR:
 
 all: samples
@@ -50,6 +51,9 @@ bench: $(INSTALLED) needs
 dist: $(INSTALLED)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check build
 	$(BIN)/python -m build --outdir dist .
+
+check-dist: needs-python
+	.ci/check-dist $(PYTHON)
 
 clean:
 	rm -rf $(VENV) build dist *.egg-info .pytest_cache .hypothesis .mypy_cache .ruff_cache
