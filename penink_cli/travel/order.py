@@ -1,0 +1,121 @@
+"""Order strokes for a pen: short ways between them, ends that meet joined.
+
+The tour goes from the sheet's top-left corner always to the nearest end (`_tree`), and is then
+shortened by 2-opt and Or-opt (`_improve`). Every stroke may be drawn from either end.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from penink_cli.model import Floats, Ints, Strokes
+from penink_cli.travel import _improve, _tree
+
+NEIGHBOURS = 10
+STEPS = 4000  # per stroke: some ten times what usual drawings take, so a bound on hostile ones
+
+
+def ordered(strokes: Strokes, improve: bool = True) -> Strokes:
+    """The same strokes in an order, and each in a direction, that a pen can follow quickly.
+
+    Without ``improve`` always the nearest next, which is some 15 to 25 % longer and takes a
+    tenth of the time. Cost n log n; deterministic.
+    """
+    n = len(strokes)
+    if n == 0:
+        return strokes
+    ends = np.empty((2 * n, 2))
+    ends[0::2] = strokes.points[strokes.first[:-1]]
+    ends[1::2] = strokes.points[strokes.first[1:] - 1]
+    tour, flips = _tour(ends, improve)
+    return _rearranged(strokes, tour, flips)
+
+
+def _tour(ends: Floats, improve: bool) -> tuple[Ints, np.ndarray]:
+    """Strokes in order (n,) and, by stroke, whether it is drawn from its end (n,)."""
+    n = len(ends) // 2
+    order = np.argsort(_morton(ends), kind="stable").astype(np.int32)
+    dots = (ends[0::2] == ends[1::2]).all(axis=1)
+    order = order[~((order & 1 == 1) & dots[order // 2])]  # of a dot one end will do
+    used = np.zeros(n, np.uint8)
+    near = np.empty((2 * n, NEIGHBOURS), np.int32)
+    if improve:
+        _tree.neighbours(*_planted(ends, order), used, near)
+        near[1::2][dots] = near[0::2][dots]
+    tour, flips = np.empty(n + 1, np.int32), np.zeros(n + 1, np.uint8)
+    pen = np.zeros(2)
+    place = np.full(2 * n, -1, np.int32)
+    done = 0
+    while done < n:  # a tree half empty is slow to search: plant a smaller one
+        order = order[used[order // 2] == 0]
+        place[order] = np.arange(len(order), dtype=np.int32)
+        upto = done + max((n - done) // 2, min(n - done, 64))
+        _tree.greedy(ends, *(tree := _planted(ends, order))[:2], place, *tree[2:], pen, tour[done:upto], flips, used)
+        done = upto
+    if not improve:
+        return tour[:n].astype(np.int64), flips[:n].astype(bool)
+    tour[n] = n
+    whereabouts = np.empty(n + 1, np.int32)
+    whereabouts[tour] = np.arange(n + 1, dtype=np.int32)
+    queue, waiting = np.empty(n + 1, np.int32), np.empty(n + 1, np.uint8)
+    _improve.improve(ends, near, tour, whereabouts, flips, queue, waiting, STEPS * n)
+    opened = np.roll(tour, -1 - int(whereabouts[n]))[:n].astype(np.int64)
+    turned = flips[:n].astype(bool)
+    beginning = ends[2 * opened[0] + turned[opened[0]]]
+    finish = ends[2 * opened[-1] + 1 - turned[opened[-1]]]
+    if np.hypot(*finish) < np.hypot(*beginning):
+        return opened[::-1], ~turned
+    return opened, turned
+
+
+def _planted(ends: Floats, order: np.ndarray) -> tuple[Floats, np.ndarray, Floats, np.ndarray]:
+    """The arrays of a tree over these ends: sorted points, order, boxes, alive."""
+    leaves = 1 << max(0, (-(-len(order) // _tree.LEAF) - 1).bit_length())
+    tree = ends[order], order, np.empty((2 * leaves, 4)), np.empty(2 * leaves, np.int32)
+    _tree.build(tree[0], *tree[2:])
+    return tree
+
+
+def _morton(points: Floats) -> Ints:
+    """Place of each point along a Morton curve of 2^26 × 2^26 cells over their bounding box."""
+    low = points.min(axis=0)
+    side = float((points - low).max())
+    cells = ((points - low) * ((2**26 - 1) / side if side > 0 else 0.0)).astype(np.int64)
+    for shift, mask in ((16, 0x0000FFFF0000FFFF), (8, 0x00FF00FF00FF00FF), (4, 0x0F0F0F0F0F0F0F0F),
+                        (2, 0x3333333333333333), (1, 0x5555555555555555)):  # fmt: skip
+        cells = (cells | (cells << shift)) & mask
+    return cells[:, 0] | (cells[:, 1] << 1)
+
+
+def _rearranged(strokes: Strokes, tour: Ints, flips: np.ndarray) -> Strokes:
+    """Strokes in the order of tour, those flipped (by their old number) from end to start."""
+    counts = np.diff(strokes.first)[tour]
+    first = np.concatenate([[0], np.cumsum(counts)])
+    turned = np.repeat(flips[tour], counts)
+    along = np.arange(first[-1]) - np.repeat(first[:-1], counts)
+    begin = np.repeat(strokes.first[tour], counts)
+    index = np.where(turned, begin + np.repeat(counts, counts) - 1 - along, begin + along)
+    return replace(strokes, points=strokes.points[index], first=first, widths=strokes.widths[tour])
+
+
+def joined(strokes: Strokes, tolerance: float) -> Strokes:
+    """Strokes whose ends meet the next one's beginning, within ``tolerance`` points, drawn in one go.
+
+    Only strokes of one width are joined, and dots never. The later stroke's beginning moves to
+    the earlier one's end, so nothing else of the ink changes than by the tolerance.
+    """
+    n = len(strokes)
+    if n < 2:
+        return strokes
+    ends, starts = strokes.points[strokes.first[1:-1] - 1], strokes.points[strokes.first[1:-1]]
+    drawn = np.diff(strokes.first) > 1
+    meet = np.hypot(*(ends - starts).T) <= tolerance
+    meet &= (strokes.widths[1:] == strokes.widths[:-1]) & drawn[1:] & drawn[:-1]
+    keep = np.ones(len(strokes.points), bool)
+    keep[strokes.first[1:-1][meet]] = False
+    begins = np.concatenate([[True], ~meet])
+    kept_before = np.concatenate([[0], np.cumsum(keep)])
+    first = np.append(kept_before[strokes.first[:-1][begins]], kept_before[-1])
+    return replace(strokes, points=strokes.points[keep], first=first, widths=strokes.widths[begins])
