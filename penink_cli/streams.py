@@ -332,7 +332,7 @@ def install_signals() -> None:
             _closed.add(descriptor)
             os.open(os.devnull, os.O_RDONLY if descriptor else os.O_WRONLY)
             if descriptor == 1:
-                sys.stdout = open(1, "w", encoding="utf-8", closefd=False)
+                sys.stdout = open(1, "w", encoding="utf-8", closefd=False)  # noqa: SIM115
     signal.signal(signal.SIGPIPE, signal.SIG_DFL)
     signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGPIPE})
     deadly = {s for s in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP) if signal.getsignal(s) != signal.SIG_IGN}

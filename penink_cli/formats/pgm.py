@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 Values = npt.NDArray[Any]  # uint8 where maxval < 256, else uint16
 
 WHITE = b" \t\r\n"
-MAX_HEADER = 1 << 20  # bytes, comments included
+MAX_HEADER = 1 << 17  # bytes, comments included; a plain number has no more digits either
 MAX_VALUE = 10**15  # of a header number: far beyond any limit, and within every integer type
 BAND = 1 << 20  # bytes read, checked and converted at a time
 
@@ -151,8 +151,8 @@ def _plain(stream: BinaryIO, source: str, count: int, maxval: int, row: int) -> 
             # Keep back the last number: its digits may go on in the next block.
             cut = max(text.rfind(bytes([w])) for w in WHITE) + 1
             text, rest = text[:cut], text[cut:]
-            if len(rest) > BAND:
-                raise FormatError(f"value {filled + 1} has more than {BAND} digits", source)
+            if len(rest) > MAX_HEADER:
+                raise FormatError(f"a raster value has more than {MAX_HEADER} digits", source)
         stray = text.translate(None, b"0123456789" + WHITE)
         if stray:
             raise FormatError(f"raster: decimal numbers are expected, found {_shown(stray[:61])}", source)

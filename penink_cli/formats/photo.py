@@ -10,6 +10,7 @@ orientation is applied. What was stored in 16 bits of grey stays in 16 bits.
 
 from __future__ import annotations
 
+import contextlib
 import io
 import struct
 import warnings
@@ -39,7 +40,7 @@ SIGNATURES = (
 )
 BAND = 1 << 20  # pixels converted at a time
 LEAST_BYTES = 64_000_000  # an encoded photograph may have these, or 8 for each pixel allowed
-RED, GREEN, BLUE = 19595, 38470, 7471  # Rec. 601 luma, of 65536
+RED, GREEN, BLUE = 299, 587, 114  # Rec. 601 luma, thousandths
 
 
 def read_grey(stream: BinaryIO, source: str, max_pixels: int) -> GreyImage:
@@ -81,7 +82,8 @@ def _decoded(encoded: bytes, kind: str, max_pixels: int) -> GreyImage:
                 if kind == "PNG":
                     _check_png(encoded, *image.size)
                 image.load()
-                return _grey(_upright(image))
+                _turn_upright(image)
+                return _grey(image)
     except PeninkError:
         raise
     except MemoryError:
@@ -91,14 +93,12 @@ def _decoded(encoded: bytes, kind: str, max_pixels: int) -> GreyImage:
         raise FormatError(f"damaged {kind} photograph: {printable(why, 60)}") from error
 
 
-def _upright(image: Image.Image) -> Image.Image:
+def _turn_upright(image: Image.Image) -> None:
     """Turn as EXIF says; a photograph whose EXIF cannot be read stays as it is stored."""
     from PIL import ImageOps
 
-    try:
-        return ImageOps.exif_transpose(image)
-    except Exception:
-        return image
+    with contextlib.suppress(Exception):
+        ImageOps.exif_transpose(image, in_place=True)
 
 
 def _grey(image: Image.Image) -> GreyImage:
@@ -146,7 +146,7 @@ def _luma(colours: npt.NDArray[np.int64]) -> npt.NDArray[np.int64]:
     if colours.shape[2] == 4:
         alpha = colours[..., 3:]
         colours = (colours[..., :3] * alpha + 255 * (255 - alpha) + 127) // 255
-    return (colours[..., 0] * RED + colours[..., 1] * GREEN + colours[..., 2] * BLUE + 32768) >> 16
+    return (colours[..., 0] * RED + colours[..., 1] * GREEN + colours[..., 2] * BLUE + 500) // 1000
 
 
 # ------------------------------------------------------------------------ PNG
