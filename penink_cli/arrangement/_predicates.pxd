@@ -1,0 +1,1 @@
+cdef int orient(double ax, double ay, double bx, double by, double cx, double cy) noexcept nogil

@@ -1,0 +1,2 @@
+cdef double cubic(double x) noexcept nogil
+cdef double bspline(double x) noexcept nogil
