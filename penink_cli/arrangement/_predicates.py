@@ -40,7 +40,7 @@ def _exact(
     ax: cython.double, ay: cython.double, bx: cython.double, by: cython.double, cx: cython.double, cy: cython.double
 ) -> cython.int:
     """Sign of bx·cy − bx·ay − ax·cy − by·cx + by·ax + ay·cx, without rounding."""
-    terms: cython.double[12]
+    terms = cython.declare(cython.double[12])
     n: cython.int = 0
     n = _add_product(terms, n, bx, cy)
     n = _add_product(terms, n, -bx, ay)
@@ -91,4 +91,3 @@ def _grow(terms: cython.p_double, n: cython.int, b: cython.double) -> cython.int
         b = total
     terms[n] = b
     return n + 1
-

@@ -13,9 +13,9 @@ from cython.cimports.penink_cli.arrangement._predicates import orient
 
 COMPILED = cython.compiled
 
-CROSS = 1
-TOUCH = 2
-OVERLAP = 3
+CROSS = cython.declare(cython.int, 1)
+TOUCH = cython.declare(cython.int, 2)
+OVERLAP = cython.declare(cython.int, 3)
 
 
 @cython.cclass
@@ -30,9 +30,7 @@ class Sweep:
     right: cython.p_int
     priority: cython.p_uint
 
-    def __init__(
-        self, x: cython.double[::1], y: cython.double[::1], start: cython.int[::1], end: cython.int[::1]
-    ):
+    def __init__(self, x: cython.double[::1], y: cython.double[::1], start: cython.int[::1], end: cython.int[::1]):
         n: cython.Py_ssize_t = start.shape[0]
         k: cython.Py_ssize_t
         h: cython.uint
@@ -44,9 +42,9 @@ class Sweep:
         self.right = cython.cast(cython.p_int, malloc(n * cython.sizeof(cython.int)))
         self.priority = cython.cast(cython.p_uint, malloc(n * cython.sizeof(cython.uint)))
         for k in range(n):  # an integer hash, so that no input can be built to unbalance the treap by its order alone
-            h = cython.cast(cython.uint, k) * 2654435769 + 1
+            h = cython.cast(cython.uint, k) * cython.cast(cython.uint, 2654435769) + 1
             h ^= h >> 15
-            h *= 2246822519
+            h = h * cython.cast(cython.uint, 2246822519)
             h ^= h >> 13
             self.priority[k] = h
 
@@ -137,8 +135,8 @@ def find(
     end: cython.int[::1],
     leaving: cython.int[::1],
     first: cython.int[::1],
-) -> tuple[int, int, int] | None:
-    """The first wrong meeting (kind, edge, edge or vertex), None if the edges meet only at shared vertices.
+) -> tuple[str, int, int] | None:
+    """The first wrong meeting: its kind (cross, touch, overlap), an edge, and an edge or for touch a vertex; or None.
 
     x, y: (n,) vertices, no two alike. order: (n,) vertices by x, then y.
     start, end: (m,) the ends of each edge, start first in that order.
@@ -224,7 +222,7 @@ def find(
                 sweep.right[e] = -1
                 tree = sweep.join(tree, e)
             tree = sweep.join(tree, above)
-    return (kind, one, two) if kind else None
+    return ("cross" if kind == CROSS else "touch" if kind == TOUCH else "overlap", one, two) if kind else None
 
 
 def orientation(

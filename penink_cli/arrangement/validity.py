@@ -28,23 +28,25 @@ def check(edges: EdgeList) -> None:
     x = np.ascontiguousarray(edges.vertices[:, 0])
     y = np.ascontiguousarray(edges.vertices[:, 1])
     order = np.lexsort((y, x)).astype(np.intc)
-    rank = np.empty(len(order), np.intc)
+    rank = np.zeros(len(order), np.intc)
     rank[order] = np.arange(len(order), dtype=np.intc)
     swap = rank[edges.edges[:, 0]] > rank[edges.edges[:, 1]]
     start = np.where(swap, edges.edges[:, 1], edges.edges[:, 0]).astype(np.intc)
     end = np.where(swap, edges.edges[:, 0], edges.edges[:, 1]).astype(np.intc)
     slope = np.arctan2(y[end] - y[start], x[end] - x[start])
     leaving = np.lexsort((slope, start)).astype(np.intc)
-    first = np.zeros(len(order) + 1, np.intc)
-    np.cumsum(np.bincount(start, minlength=len(order)), out=first[1:])
+    first = np.zeros(len(x) + 1, np.intc)
+    np.cumsum(np.bincount(start, minlength=len(x)), out=first[1:])
+    used = np.zeros(len(x), bool)
+    used[edges.edges] = True  # a vertex without an edge is of no consequence, wherever it lies
+    order = order[used[order]]
     fault = _sweep.find(x, y, order, start, end, leaving, first)
     if fault is None:
         return
     kind, one, two = fault
-    if kind == _sweep.TOUCH:
+    if kind == "touch":
         raise ArrangementError(_touch(edges, one, two))
-    verb = "cross" if kind == _sweep.CROSS else "overlap"
-    raise ArrangementError(f"edges {min(one, two)} and {max(one, two)} {verb}; edges may meet only at a shared vertex")
+    raise ArrangementError(f"edges {min(one, two)} and {max(one, two)} {kind}; edges may meet only at a shared vertex")
 
 
 def _check_vertices(edges: EdgeList) -> None:
@@ -97,7 +99,8 @@ def _touch(edges: EdgeList, e: int, v: int) -> str:
         if _sweep.orientation(*a, *b, *far) == 0:
             return f"edges {min(e, f)} and {max(e, f)} overlap; edges may meet only at a shared vertex"
     at = f", an end of edge {touching[0]}," if len(touching) else ""
-    return f"edge {e}: vertex {v}{at} at {_number(here[0])},{_number(here[1])} lies on it; edges may meet only at their ends"
+    place = ",".join(_number(c) for c in here)
+    return f"edge {e}: vertex {v}{at} at {place} lies on it; edges may meet only at a shared vertex"
 
 
 def _where(edges: EdgeList, v: int) -> str:

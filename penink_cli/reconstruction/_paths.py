@@ -85,6 +85,14 @@ def span(
     right[0] = (x1 if x0 < x1 else x0) + PAD
 
 
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def distance(ax: cython.double, ay: cython.double, bx: cython.double, by: cython.double) -> cython.double:
+    """Between two points."""
+    return sqrt((ax - bx) * (ax - bx) + (ay - by) * (ay - by))
+
+
 @cython.cclass
 class Scene:
     """Edges in sample units, bucketed by unit cell; the nodes, and the arcs between them up to `reach` long."""
@@ -281,7 +289,7 @@ class Scene:
     @cython.nogil
     @cython.exceptval(check=False)
     def bends_for(self, node: cython.int, qx: cython.double, qy: cython.double) -> cython.bint:
-        """Whether a shortest path to the query q may have its bend next to q at this node: within the sector, and taut."""
+        """Whether a shortest path may bend at this node and go straight to the query q: within the sector, and taut."""
         v: cython.int = self.node_vertex[node]
         a: cython.int = self.node_low[node]
         b: cython.int = self.node_high[node]
@@ -518,9 +526,7 @@ def find_arcs(scene: Scene) -> cython.void:
                     continue
                 if used == size:
                     size *= 2
-                    scene.arc_to = cython.cast(
-                        cython.p_int, realloc(scene.arc_to, size * cython.sizeof(cython.int))
-                    )
+                    scene.arc_to = cython.cast(cython.p_int, realloc(scene.arc_to, size * cython.sizeof(cython.int)))
                     scene.arc_length = cython.cast(
                         cython.p_double, realloc(scene.arc_length, size * cython.sizeof(cython.double))
                     )
@@ -540,7 +546,7 @@ def arc(scene: Scene, m: cython.int, n: cython.int) -> cython.double:
     d: cython.double
     if u == v:
         return -1.0
-    d = sqrt((scene.vx[u] - scene.vx[v]) * (scene.vx[u] - scene.vx[v]) + (scene.vy[u] - scene.vy[v]) * (scene.vy[u] - scene.vy[v]))
+    d = distance(scene.vx[u], scene.vy[u], scene.vx[v], scene.vy[v])
     if d > scene.reach:
         return -1.0
     if not (taut(scene, m, v) and taut(scene, n, u)):
@@ -679,7 +685,10 @@ class Finder:
         self.now += 1
         self.heap_used = 0
         for row in range(self.scene.row_of(qy - reach), self.scene.row_of(qy + reach) + 1):
-            for k in range(self.scene.node_cell_start[row * self.scene.gw + c0], self.scene.node_cell_start[row * self.scene.gw + c1 + 1]):
+            for k in range(
+                self.scene.node_cell_start[row * self.scene.gw + c0],
+                self.scene.node_cell_start[row * self.scene.gw + c1 + 1],
+            ):
                 n = self.scene.node_cell[k]
                 x = self.scene.vx[self.scene.node_vertex[n]]
                 y = self.scene.vy[self.scene.node_vertex[n]]
@@ -737,8 +746,6 @@ class Finder:
         """Where the pool keeps the bends of sample (row i, column j), nearest first; `count` says how many."""
         k: cython.int
         s: cython.Py_ssize_t = cython.cast(cython.Py_ssize_t, i - self.row0) * self.scene.width + j
-        node: cython.int
-        key: cython.double
         if self.count[s] >= 0:
             return self.start[s]
         self.first_bends(j, i, self.reach)
@@ -786,6 +793,7 @@ class Finder:
         j: cython.int
         k: cython.int = 0
         n: cython.int = (i1 - i0 + 1) * (j1 - j0 + 1)
+        s: cython.Py_ssize_t
         m: cython.int
         at: cython.int
         node: cython.int
@@ -793,9 +801,7 @@ class Finder:
         d: cython.double
         best: cython.double
         farthest: cython.double = 0.0
-        if self.scene.clear(
-            px if px < j0 else j0, py if py < i0 else i0, px if px > j1 else j1, py if py > i1 else i1
-        ):
+        if self.scene.clear(px if px < j0 else j0, py if py < i0 else i0, px if px > j1 else j1, py if py > i1 else i1):
             return False
         if n > self.alpha_size:
             self.alpha_size = n
@@ -810,7 +816,7 @@ class Finder:
                     if d > farthest:
                         farthest = d
                 k += 1
-        if farthest == 0.0:
+        if farthest <= 0.0:
             return True
         # The bends next to the samples first: finding them uses the same marks as the search from p.
         k = 0
@@ -829,7 +835,8 @@ class Finder:
                     d = sqrt((px - j) * (px - j) + (py - i) * (py - i))
                     best = INFINITY
                     at = self.bends_of(i, j)
-                    for m in range(at, at + self.count[cython.cast(cython.Py_ssize_t, i - self.row0) * self.scene.width + j]):
+                    s = cython.cast(cython.Py_ssize_t, i - self.row0) * self.scene.width + j
+                    for m in range(at, at + self.count[s]):
                         node = self.pool_node[m]
                         if self.stamp[node] == self.now and self.distance[node] + self.pool_length[m] < best:
                             best = self.distance[node] + self.pool_length[m]
@@ -869,8 +876,9 @@ class Finder:
             x = self.scene.vx[self.scene.node_vertex[n]]
             y = self.scene.vy[self.scene.node_vertex[n]]
             d = self.distance[n] + sqrt((x - qx) * (x - qx) + (y - qy) * (y - qy))
-            if d < best and d <= limit and self.scene.bends_for(n, qx, qy) and self.scene.sees_vertex(qx, qy, self.scene.node_vertex[n]):
-                best = d
+            if d < best and d <= limit and self.scene.bends_for(n, qx, qy):
+                if self.scene.sees_vertex(qx, qy, self.scene.node_vertex[n]):
+                    best = d
         return best
 
 

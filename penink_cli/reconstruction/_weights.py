@@ -130,8 +130,8 @@ def scattered(
             )  # fmt: skip
             for a in range(n):
                 for b in range(n):
-                    index[k, a * n + b] = (
-                        cython.cast(cython.longlong, clamp(y_first[k] + a, h)) * w + clamp(x_first[k] + b, w)
+                    index[k, a * n + b] = cython.cast(cython.longlong, clamp(y_first[k] + a, h)) * w + clamp(
+                        x_first[k] + b, w
                     )
 
 
@@ -162,7 +162,6 @@ def lattice(
     w: cython.int = finder.scene.width
     h: cython.int = finder.scene.height
     total: cython.double
-    norm: cython.double
     with cython.nogil:
         for p in range(y.shape[0]):
             for q in range(x.shape[0]):

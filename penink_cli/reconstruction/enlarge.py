@@ -9,7 +9,8 @@ import numpy as np
 
 from penink_cli.errors import ParameterError
 from penink_cli.model import EdgeList, Floats, GreyImage
-from penink_cli.reconstruction import _weights, threads as threading
+from penink_cli.reconstruction import _weights
+from penink_cli.reconstruction import threads as threading
 from penink_cli.reconstruction.kernels import is_bspline, taps
 from penink_cli.reconstruction.paths import Paths, reach
 

@@ -8,7 +8,8 @@ import numpy as np
 import numpy.typing as npt
 
 from penink_cli.model import EdgeList, Floats
-from penink_cli.reconstruction import _paths, threads as threading
+from penink_cli.reconstruction import _paths
+from penink_cli.reconstruction import threads as threading
 
 COMPILED = _paths.COMPILED
 
@@ -16,7 +17,7 @@ BLOCK = 2.0 * math.sqrt(2.0)  # how far a point can be from a sample under its 4
 
 
 def reach(radius: float, widening: float = 1.0) -> float:
-    """How long a path from a sample to a bend can be and still matter: the farthest tap and the ellipse (equation 6)."""
+    """How long a path from a sample to a bend can be and still matter: farthest tap and ellipse (equation 6)."""
     return BLOCK * widening + radius * widening
 
 

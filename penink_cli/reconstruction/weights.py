@@ -10,7 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from penink_cli.model import Floats, Ints
-from penink_cli.reconstruction import _weights, threads as threading
+from penink_cli.reconstruction import _weights
+from penink_cli.reconstruction import threads as threading
 from penink_cli.reconstruction.kernels import is_bspline, taps
 from penink_cli.reconstruction.paths import Paths
 
