@@ -212,7 +212,7 @@ def png(width: int, height: int, rows: bytes, bits: int = 8, colour: int = 0, in
 def test_a_png_one_row_short():
     row = b"\x00" + b"\x80" * 4
     assert read(png(4, 3, row * 3)).values.tolist() == [[128] * 4] * 3
-    with pytest.raises(FormatError, match="p.img: truncated: 10 of 15 bytes of PNG rows"):
+    with pytest.raises(FormatError, match=r"p.img: truncated: 10 of 15 bytes of PNG rows"):
         read(png(4, 3, row * 2))
 
 
@@ -287,7 +287,7 @@ def test_a_bomb_of_compressed_rows_is_not_blown_up():
 def test_no_other_format_is_a_photograph(data, monkeypatch):
     monkeypatch.setattr(os, "system", lambda *_: pytest.fail("a program was started"))
     monkeypatch.setattr("subprocess.Popen", lambda *_, **__: pytest.fail("a program was started"))
-    with pytest.raises(FormatError, match="p.img: not a PGM, PPM, PNG, JPEG, TIFF or WebP photograph"):
+    with pytest.raises(FormatError, match=r"p.img: not a PGM, PPM, PNG, JPEG, TIFF or WebP photograph"):
         read(data)
 
 

@@ -68,9 +68,9 @@ def test_is_refused(name):
 
 
 def test_the_place_is_named():
-    with pytest.raises(FormatError, match="^x: line 7: column 1: not JSON"):
+    with pytest.raises(FormatError, match=r"^x: line 7: column 1: not JSON"):
         strict_json.loads(b"?", "x", "line 7")
-    with pytest.raises(FormatError, match='^x: line 7: member "a" appears twice'):
+    with pytest.raises(FormatError, match=r'^x: line 7: member "a" appears twice'):
         strict_json.loads(b'{"a":1,"a":1}', "x", "line 7")
 
 
@@ -110,31 +110,31 @@ NOT_NUMBERS = [True, False, None, "1", [1], {"a": 1}, HUGE, -HUGE]
 
 @pytest.mark.parametrize("value", [*NOT_NUMBERS, 1.5, -1, 11, 1.0, int("9" * 4000)], ids=lambda v: str(v)[:9])
 def test_whole(value):
-    with pytest.raises(FormatError, match="^n is .*a whole number from 0 to 10 is needed"):
+    with pytest.raises(FormatError, match=r"^n is .*a whole number from 0 to 10 is needed"):
         strict_json.whole(value, "n", 0, 10)
     assert strict_json.whole(10, "n", 0, 10) == 10
 
 
 @pytest.mark.parametrize("value", [*NOT_NUMBERS, -0.5, 1.01], ids=lambda v: str(v)[:9])
 def test_number(value):
-    with pytest.raises(FormatError, match="^n is .*a number from 0 to 1 is needed"):
+    with pytest.raises(FormatError, match=r"^n is .*a number from 0 to 1 is needed"):
         strict_json.number(value, "n", 0, 1)
     assert strict_json.number(1, "n", 0, 1) == 1.0
 
 
 @pytest.mark.parametrize("value", NOT_NUMBERS, ids=lambda v: str(v)[:9])
 def test_arrays_of_numbers_name_the_first_that_is_none(value):
-    with pytest.raises(FormatError, match="^thing 2 holds "):
+    with pytest.raises(FormatError, match=r"^thing 2 holds "):
         strict_json.numbers([0, 1.5, value, True], "things", "thing")
-    with pytest.raises(FormatError, match="^thing 1 holds "):
+    with pytest.raises(FormatError, match=r"^thing 1 holds "):
         strict_json.pairs([[0, 1], [1, value], [value, 2]], "things", "thing")
-    with pytest.raises(FormatError, match="^thing 1 holds .*whole numbers are needed"):
+    with pytest.raises(FormatError, match=r"^thing 1 holds .*whole numbers are needed"):
         strict_json.whole_pairs([[0, 1], [1, value], [0.5, 2]], "things", "thing")
 
 
 @pytest.mark.parametrize("pair", [None, True, 1, [], [1], [1, 2, 3], "ab", {"a": 1, "b": 2}])
 def test_pairs_name_the_first_that_is_none(pair):
-    with pytest.raises(FormatError, match="^thing 1 is "):
+    with pytest.raises(FormatError, match=r"^thing 1 is "):
         strict_json.pairs([[0, 1], pair, None], "things", "thing")
 
 
