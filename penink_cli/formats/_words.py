@@ -13,7 +13,7 @@ COMPILED = cython.compiled
 def put(
     numbers: cython.const[cython.longlong][::1],
     decimals: cython.int,
-    after: cython.const[cython.uchar][::1],
+    after: cython.const[cython.int][::1],
     words: cython.const[cython.uchar][::1],
     starts: cython.const[cython.longlong][::1],
     out: cython.uchar[::1],

@@ -166,7 +166,7 @@ def _body(
 
 def _arrays(rows: Ints, step: int, call: bytes) -> memoryview:
     """Rows of numbers as arrays of some 400, a line ending after each stroke, or segment of a long one."""
-    after = np.zeros(rows.shape, np.uint8)
+    after = np.zeros(rows.shape, np.int32)
     if rows.shape[1] > 24:
         after[:, 1::step] = 1
     if not step:

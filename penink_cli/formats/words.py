@@ -11,10 +11,10 @@ from penink_cli.formats import _words
 from penink_cli.model import Floats, Ints
 
 
-def text(numbers: Ints, after: npt.NDArray[np.uint8], words: Sequence[bytes], decimals: int = 0) -> memoryview:
+def text(numbers: Ints, after: npt.NDArray[np.int32], words: Sequence[bytes], decimals: int = 0) -> memoryview:
     """Each of numbers / 10^decimals, without needless zeros, followed by words[after].
 
-    >>> bytes(text(np.array([10, -25, 0]), np.array([0, 0, 1], np.uint8), [b" ", b" l"], decimals=1))
+    >>> bytes(text(np.array([10, -25, 0]), np.array([0, 0, 1], np.int32), [b" ", b" l"], decimals=1))
     b'1 -2.5 0 l'
     """
     starts = np.cumsum([0, *map(len, words)])
