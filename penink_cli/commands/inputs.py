@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import os
+from dataclasses import replace
+
 import click
 
 from penink_cli import streams
-from penink_cli.errors import PeninkError
-from penink_cli.model import EdgeList, GreyImage
+from penink_cli.errors import FormatError, LimitError, PeninkError
+from penink_cli.model import EdgeList, GreyImage, Illustration
+
+MAX_MEMBER = 1 << 28  # bytes of a file that a manifest names
 
 
 def read_grey(path: str | None, max_pixels: int) -> GreyImage:
@@ -40,6 +45,64 @@ def read_edges(path: str | None) -> EdgeList | None:
     except PeninkError as error:
         raise error.from_source(source) from None
     return edges
+
+
+def read_illustration(path: str | None, max_pixels: int) -> Illustration:
+    """An illustration, from its manifest and the files that names, or packed; ready to be drawn.
+
+    Its samples have no more grey levels than their layer keeps, its edges lie on the grid that a packed illustration
+    keeps them on and are a valid arrangement: loose or packed, it is the same.
+    """
+    from penink_cli.arrangement import quantisation, validity
+    from penink_cli.formats import archive, compact, illustration
+    from penink_cli.texture_options import find_texture
+
+    source = streams.source_name(path)
+    with streams.reading(path) as stream:
+        text = stream.read(archive.MAX_BYTES + 1)
+    if text.startswith(archive.MAGIC) or source.endswith(".penink"):
+        if source.endswith(".json"):
+            raise FormatError("is an archive, not JSON; name it *.penink", source)
+        members = archive.read(text, source)
+
+        def fetch(name: str) -> bytes:
+            if name not in members:
+                raise FormatError("is not in the archive")
+            return members[name]
+
+        text = fetch_manifest(members, source)
+    else:
+        folder = os.path.dirname(path) if path is not None and path != "-" else ""
+
+        def fetch(name: str) -> bytes:
+            with streams.reading(os.path.join(folder, name)) as stream:
+                content = stream.read(MAX_MEMBER + 1)
+            if len(content) > MAX_MEMBER:
+                raise LimitError(f"more than {MAX_MEMBER} bytes")
+            return content
+
+    found = illustration.read(text, source, fetch, find_texture, max_pixels)
+    layers = []
+    for i, layer in enumerate(found.layers):
+        edges = layer.edges
+        if edges is not None:
+            rows, columns = layer.samples.values.shape
+            try:
+                validity.check(edges)
+            except PeninkError as error:
+                raise type(error)(f"layer {i}: edges: {error.message}", source) from None
+            edges = quantisation.quantise(edges, compact.GRID * columns, compact.GRID * rows)
+        layers.append(replace(layer, edges=edges))
+    return illustration.rounded(replace(found, layers=tuple(layers)))
+
+
+def fetch_manifest(members: dict[str, bytes], source: str) -> bytes:
+    """The manifest among an archive's members."""
+    from penink_cli.formats.illustration import MANIFEST
+
+    if MANIFEST not in members:
+        raise FormatError(f"an archive without {MANIFEST}; not an illustration", source)
+    return members[MANIFEST]
 
 
 def only_one_standard_input(*paths: str | None) -> None:

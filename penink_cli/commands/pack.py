@@ -1,0 +1,28 @@
+"""``penink pack``."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import click
+
+from penink_cli.commands.inputs import read_illustration
+from penink_cli.formats import archive, illustration
+from penink_cli.options import filter_options
+from penink_cli.streams import writing
+
+
+@click.command()
+@filter_options
+def pack(file: str | None, output: str | None, max_pixels: int, **_: Any) -> None:
+    """Pack an illustration and all its members in one small file.
+
+    FILE is an illustration's manifest; the files it names are found beside it. The archive is a ZIP: unzipped, it is
+    an illustration of loose files again, which draws the same strokes.
+
+    \b
+    penink pack keys.illustration.json -o keys.penink
+    """
+    packed = archive.pack(illustration.members(read_illustration(file, max_pixels)))
+    with writing(output) as out:
+        out.write(packed)

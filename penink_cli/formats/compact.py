@@ -1,0 +1,338 @@
+"""Samples, edges and texts in as few bytes as they can be: the members of a packed illustration.
+
+Each begins with four bytes that say what it is, then whole numbers (seven bits a byte, low ones
+first, the eighth set on all but the last), then one stretch of the adaptive code of `_compact`:
+
+=========  =========================================  ==========================================
+``PIs1``   width, height, maxval                      samples, row by row, by their neighbours
+``PIe1``   W, H, grid columns, grid rows, number of   chains: where each starts, then one step
+           edges, 1 where strengths follow else 0     after the other
+``PIt1``   number of bytes                            a text, byte by byte
+=========  =========================================  ==========================================
+
+Vertices lie on a grid of columns × rows cells that spans the edge list's frame W × H: the point (a, b) is
+x = a·W / columns, y = b·H / rows. The grid has `GRID` points to the sample spacing, which costs at most
+0.1 dB against exact edges. Strengths are kept in sixteenths.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from penink_cli.errors import FormatError, LimitError
+from penink_cli.formats import edge_list
+from penink_cli.formats._compact import Coder
+from penink_cli.model import EdgeList, GreyImage, Ints
+
+SAMPLES, EDGES, TEXT = b"PIs1", b"PIe1", b"PIt1"
+
+GRID = 16  # points of the edges' grid to the sample spacing
+STRENGTHS = 16  # steps of strength
+MAX_GRID = 1 << 24  # points along a side
+MAX_SAMPLES = 1 << 24  # 4096 × 4096: read in about five seconds
+MAX_TEXT = 1 << 24
+
+# Kinds of numbers in a list of edges; each has statistics of its own.
+_CHAIN, _DOWN, _ALONG, _STEP, _BACK, _MAIN, _ASIDE, _STRENGTH = range(8)
+# What a step along a chain leads to.
+_NEW, _END, _START, _OLD = range(4)
+
+
+def requantised(image: GreyImage, levels: int) -> GreyImage:
+    """The image at no more than ``levels`` grey levels; one that has no more is returned as it is."""
+    if image.maxval < levels:
+        return image
+    most = levels - 1
+    values = (image.values.astype(np.int64) * (2 * most) + image.maxval) // (2 * image.maxval)
+    return _grey(values, most)
+
+
+def _grey(values: npt.NDArray[Any], maxval: int) -> GreyImage:
+    return GreyImage(values.astype(np.uint8) if maxval < 256 else values.astype(np.uint16), maxval)
+
+
+# ------------------------------------------------------------------------------ samples
+
+
+def samples_bytes(image: GreyImage) -> bytes:
+    """Samples, without loss."""
+    h, w = image.values.shape
+    coder = Coder()
+    coder.samples(np.ascontiguousarray(image.values, np.int32), image.maxval)
+    return SAMPLES + _numbers(w, h, image.maxval) + coder.finish()
+
+
+def samples_from(data: bytes, max_pixels: int) -> GreyImage:
+    """What `samples_bytes` wrote. Raises FormatError, and LimitError before anything large is allocated."""
+    (width, height, maxval), rest = _header(data, SAMPLES, 3)
+    if not (width and height and 1 <= maxval <= 65535):
+        raise FormatError(f"samples of {width} x {height} with maxval {maxval}")
+    limit = min(max_pixels, MAX_SAMPLES)
+    if width * height > limit:
+        raise LimitError(f"{width} x {height} samples; {limit} are allowed in all")
+    values = np.zeros((height, width), np.int32)
+    coder = Coder(rest)
+    coder.samples(values, maxval)
+    _check_end(coder)
+    return _grey(values, maxval)
+
+
+# -------------------------------------------------------------------------------- texts
+
+
+def text_bytes(text: bytes) -> bytes:
+    """Any bytes, best those of a text."""
+    coder = Coder()
+    coder.text(np.frombuffer(bytearray(text), np.uint8))
+    return TEXT + _numbers(len(text)) + coder.finish()
+
+
+def text_from(data: bytes) -> bytes:
+    """What `text_bytes` wrote."""
+    (size,), rest = _header(data, TEXT, 1)
+    if size > MAX_TEXT:
+        raise LimitError(f"a text of {size} bytes; {MAX_TEXT} are allowed")
+    values = np.zeros(size, np.uint8)
+    coder = Coder(rest)
+    coder.text(values)
+    _check_end(coder)
+    return values.tobytes()
+
+
+# -------------------------------------------------------------------------------- edges
+
+
+def edges_bytes(edges: EdgeList, columns: int, rows: int) -> bytes:
+    """Edges whose vertices lie on a grid of columns × rows cells, in an order that depends on nothing but them.
+
+    Strengths are rounded to sixteenths.
+    """
+    grid = np.rint(edges.vertices * (columns / edges.width, rows / edges.height)).astype(np.int64)
+    strong = edges.strength is not None
+    head = _numbers(edges.width, edges.height, columns, rows, len(edges.edges), int(strong))
+    coder = Coder()
+    if len(edges.edges):
+        steps = np.zeros(len(edges.edges), np.int64)
+        if edges.strength is not None:
+            steps = np.floor(edges.strength * STRENGTHS + 0.5).astype(np.int64)
+        _Chains(coder, strong).write(grid, edges.edges, steps)
+    return EDGES + head + coder.finish()
+
+
+def edges_from(data: bytes) -> EdgeList:
+    """What `edges_bytes` wrote, each vertex and edge sound by itself (see `edge_list.check`)."""
+    (width, height, columns, rows, count, strong), rest = _header(data, EDGES, 6)
+    if not (1 <= width <= edge_list.MAX_SIDE and 1 <= height <= edge_list.MAX_SIDE):
+        raise FormatError(f"edges of a frame {width} x {height}")
+    if not (1 <= columns <= MAX_GRID and 1 <= rows <= MAX_GRID) or strong > 1:
+        raise FormatError(f"edges on a grid of {columns} x {rows}")
+    if count > 16 * len(rest) + 64:
+        raise FormatError(f"{count} edges in {len(rest)} bytes; truncated")
+    chains = _Chains(Coder(rest), bool(strong))
+    grid, ends, steps = chains.read(count, columns, rows)
+    vertices = np.array(grid, np.float64).reshape(-1, 2) * (width, height) / (columns, rows)
+    strength = np.array(steps, np.float64) / STRENGTHS if strong else None
+    found = EdgeList(width, height, vertices, np.array(ends, np.int64).reshape(-1, 2), strength)
+    edge_list.check(found)
+    return found
+
+
+class _Chains:
+    """Edges as chains of steps from grid point to grid point.
+
+    A chain starts at a new point, told by its offset from the start before it, or at an old one. Each
+    step is expected to go on in the direction of the one before: its longer coordinate is
+    written first, then how far the other is from where that direction would have it.
+    """
+
+    def __init__(self, coder: Coder, strong: bool):
+        self.coder, self.strong = coder, strong
+
+    def _step(self, dx: int, dy: int, before: tuple[int, int]) -> tuple[int, int]:
+        """One step, given (to write) or not (to read), and the step before it, (0, 0) at the start of a chain."""
+        bx, by = before
+        swap = abs(by) > abs(bx)
+        if swap:
+            dx, dy, bx, by = dy, dx, by, bx
+        turned = -1 if bx < 0 else 1
+        size = min(255, abs(bx).bit_length() * 16 + min(15, 16 * abs(by) // abs(bx) if bx else 0))
+        dx = turned * self.coder.number(turned * dx, _MAIN, size >> 4, size)
+        guess = (2 * dx * by + abs(bx)) // (2 * abs(bx)) * turned if bx else 0
+        dy = guess + self.coder.number(dy - guess, _ASIDE, min(255, abs(dx).bit_length() * 16 + (size >> 4)), size)
+        return (dy, dx) if swap else (dx, dy)
+
+    def write(self, grid: Ints, ends: Ints, steps: Ints) -> None:
+        coder = self.coder
+        seen: dict[int, int] = {}
+        points = grid.tolist()
+        last = (0, 0)
+        for chain, strengths in _trails(grid, ends, steps):
+            x, y = points[chain[0]]
+            if chain[0] in seen:
+                coder.number(len(seen) - seen[chain[0]], _CHAIN)
+            else:
+                coder.number(0, _CHAIN)
+                coder.number(y - last[1], _DOWN)
+                coder.number(x - last[0], _ALONG, min(255, abs(y - last[1])))
+                last = (x, y)
+                seen[chain[0]] = len(seen)
+            before, kind, strength = (0, 0), _NEW, 0
+            for i, vertex in enumerate(chain[1:]):
+                if vertex in seen:
+                    now = _START if vertex == chain[0] else _OLD
+                    coder.number(now, _STEP, kind, min(i, 15))
+                    if now == _OLD:
+                        coder.number(len(seen) - seen[vertex], _BACK)
+                else:
+                    now = _NEW
+                    coder.number(now, _STEP, kind, min(i, 15))
+                    nx, ny = points[vertex]
+                    before = self._step(nx - x, ny - y, before)
+                    seen[vertex] = len(seen)
+                x, y = points[vertex]
+                kind = now
+                if self.strong:
+                    coder.number(strengths[i] - strength, _STRENGTH, strength, int(i > 0))
+                    strength = strengths[i]
+            coder.number(_END, _STEP, kind, min(len(chain) - 1, 15))
+
+    def read(
+        self, count: int, columns: int, rows: int
+    ) -> tuple[list[tuple[int, int]], list[tuple[int, int]], list[int]]:
+        coder = self.coder
+        points: list[tuple[int, int]] = []
+        ends: list[tuple[int, int]] = []
+        steps: list[int] = []
+        last = (0, 0)
+
+        def new(x: int, y: int) -> int:
+            if not (0 <= x <= columns and 0 <= y <= rows):
+                raise FormatError(f"vertex {len(points)} at {x}, {y} is off the grid of {columns} x {rows}")
+            points.append((x, y))
+            return len(points) - 1
+
+        def old(back: int) -> int:
+            if not 0 < back <= len(points):
+                raise FormatError(f"a step back over {back} of {len(points)} vertices")
+            return len(points) - back
+
+        while len(ends) < count and not coder.overrun:
+            back = coder.number(0, _CHAIN)
+            if back:
+                at = old(back)
+            else:
+                y = last[1] + coder.number(0, _DOWN)
+                last = (last[0] + coder.number(0, _ALONG, min(255, abs(y - last[1]))), y)
+                at = new(*last)
+            start, before, kind, strength, i = at, (0, 0), _NEW, 0, 0
+            while not coder.overrun:
+                now = coder.number(0, _STEP, kind, min(i, 15))
+                if now == _END:
+                    break
+                if len(ends) == count:
+                    raise FormatError(f"more than the {count} edges announced")
+                if now == _NEW:
+                    before = self._step(0, 0, before)
+                    to = new(points[at][0] + before[0], points[at][1] + before[1])
+                elif now == _START:
+                    to = start
+                else:
+                    to = old(coder.number(0, _BACK))
+                ends.append((at, to))
+                at, kind, i = to, now, i + 1
+                if self.strong:
+                    strength += coder.number(0, _STRENGTH, strength, int(i > 1))
+                    if not 0 <= strength <= STRENGTHS:
+                        raise FormatError(f"edge {len(ends) - 1}: strength {strength}; 0 to {STRENGTHS} is allowed")
+                    steps.append(strength)
+        _check_end(coder)
+        return points, ends, steps
+
+
+def _trails(grid: Ints, ends: Ints, steps: Ints) -> list[tuple[list[int], list[int]]]:
+    """The edges as few trails, each with the strengths along it, in an order given by the places of vertices alone.
+
+    Trails start where an odd number of edges meet, then, for the rings that remain, at their topmost
+    vertex; at a junction they go straight on.
+    """
+    rank = np.empty(len(grid), np.int64)
+    by_place = np.lexsort((grid[:, 0], grid[:, 1]))
+    rank[by_place] = np.arange(len(grid))
+    around: list[list[tuple[int, int]]] = [[] for _ in range(len(grid))]
+    for edge in np.lexsort((rank[ends].max(axis=1), rank[ends].min(axis=1))).tolist():
+        a, b = ends[edge].tolist()
+        around[a].append((b, edge))
+        around[b].append((a, edge))
+    points, used, strengths = grid.tolist(), bytearray(len(ends)), steps.tolist()
+
+    def onward(here: int, came: tuple[int, int] | None) -> tuple[int, int] | None:
+        free = [(to, edge) for to, edge in around[here] if not used[edge]]
+        if came is None or len(free) < 2:
+            return free[0] if free else None
+        x, y = points[here]
+
+        def bend(way: tuple[int, int]) -> float:
+            dx, dy = points[way[0]][0] - x, points[way[0]][1] - y
+            along = dx * came[0] + dy * came[1]
+            return -along * abs(along) / (dx * dx + dy * dy)
+
+        return min(free, key=bend)
+
+    trails = []
+    order = by_place.tolist()
+    for odd in (True, False):
+        for start in order:
+            while sum(not used[edge] for _, edge in around[start]) % 2 == 1 or (
+                not odd and any(not used[edge] for _, edge in around[start])
+            ):
+                chain, along, here, came = [start], [], start, None
+                while (way := onward(here, came)) is not None:
+                    used[way[1]] = 1
+                    along.append(strengths[way[1]])
+                    came = points[way[0]][0] - points[here][0], points[way[0]][1] - points[here][1]
+                    here = way[0]
+                    chain.append(here)
+                trails.append((chain, along))
+    return trails
+
+
+# ------------------------------------------------------------------------------ headers
+
+
+def _numbers(*values: int) -> bytes:
+    out = bytearray()
+    for value in values:
+        while value > 127:
+            out.append(value & 127 | 128)
+            value >>= 7
+        out.append(value)
+    return bytes(out)
+
+
+def _header(data: bytes, magic: bytes, count: int) -> tuple[list[int], bytes]:
+    """The whole numbers after the magic bytes, and what follows them."""
+    if data[:4] != magic:
+        raise FormatError(f"begins with {data[:4]!r}; {magic!r} is expected")
+    at, values = 4, []
+    for _ in range(count):
+        value = shift = 0
+        while True:
+            if at >= len(data) or shift > 35:
+                raise FormatError("truncated in its header" if at >= len(data) else "a header number is too large")
+            value |= (data[at] & 127) << shift
+            shift += 7
+            at += 1
+            if data[at - 1] < 128:
+                break
+        values.append(value)
+    return values, data[at:]
+
+
+def _check_end(coder: Coder) -> None:
+    if not coder.end() or coder.overrun:
+        raise FormatError("truncated or damaged")
+    if coder.rest:
+        raise FormatError(f"{coder.rest} bytes after its end")

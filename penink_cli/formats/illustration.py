@@ -1,0 +1,240 @@
+"""``*.illustration.json``: the manifest of an illustration, its layers and what each is made of.
+
+    {"format": "penink-illustration", "version": 1, "width": 288, "height": 288,
+     "layers": [{"name": "keys", "samples": "keys.pgm", "edges": "keys.edges.json",
+                 "texture": "crosshatch", "outline": {"pen": 0.7, "min_strength": 0.1}}]}
+
+Samples are PGM files or compact ones, edges are edge lists or compact ones, told apart by their
+first bytes; paths are relative to the manifest. The same manifest, beside compact members, is what a
+``*.penink`` archive holds. See README.md beside this file and schemas/illustration.schema.json.
+"""
+
+from __future__ import annotations
+
+import io
+import json
+import re
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+from penink_cli.errors import FormatError, LimitError, PeninkError
+from penink_cli.formats import compact, edge_list, pgm, strict_json
+from penink_cli.formats import texture as texture_format
+from penink_cli.model import EdgeList, GreyImage, Illustration, Layer, OutlineChoice, Texture
+
+FORMAT = "penink-illustration"
+MANIFEST = "illustration.json"  # its name within an archive
+MAX_BYTES = 1 << 20  # of the manifest
+MAX_LAYERS = 64
+MAX_SIZE = 144_000.0  # points
+MAX_PEN = 72.0
+RULES = ("best", "strict", "threshold")
+
+_SHIPPED = re.compile(r"[a-z0-9_-]{1,60}", re.ASCII)
+
+#: The bytes of a member, by its path in the manifest.
+Fetch = Callable[[str], bytes]
+#: The shipped texture of that name.
+Shipped = Callable[[str], Texture]
+
+
+def read(text: bytes, source: str, fetch: Fetch, shipped: Shipped, max_pixels: int) -> Illustration:
+    """The illustration whose manifest is ``text``.
+
+    Edges are sound each by itself; that they cross nowhere is for geometry to check. Raises FormatError, which
+    names the layer and member, and LimitError.
+    """
+    if len(text) > MAX_BYTES:
+        raise LimitError(f"a manifest of more than {MAX_BYTES} bytes", source)
+    try:
+        document = strict_json.header(strict_json.loads(text), FORMAT)
+        width, height = (_length(document, side, MAX_SIZE) for side in ("width", "height"))
+        items = strict_json.array(strict_json.member(document, "layers"), "layers")
+        if not 1 <= len(items) <= MAX_LAYERS:
+            raise FormatError(f"{len(items)} layers; 1 to {MAX_LAYERS} are allowed")
+        layers: list[Layer] = []
+        left = min(max_pixels, compact.MAX_SAMPLES)
+        for i, item in enumerate(items):
+            if not isinstance(item, dict):
+                raise FormatError(f"layer {i} is {strict_json.quoted(item)}; an object is needed")
+            layers.append(_layer(item, f"layer {i}", fetch, shipped, left))
+            left -= layers[-1].samples.values.size
+    except PeninkError as error:
+        raise error.from_source(source) from None
+    return Illustration(width, height, tuple(layers))
+
+
+def _layer(item: dict[str, Any], place: str, fetch: Fetch, shipped: Shipped, max_pixels: int) -> Layer:
+    def member(name: str, take: Callable[[bytes], Any]) -> Any:
+        path = strict_json.text(strict_json.member(item, name, place), f"{place}: {name}")
+        what = f"{place}: {name} {strict_json.quoted(path)}"
+        if not path or path.startswith("/") or "\0" in path:
+            raise FormatError(f"{what}; a path relative to the manifest is needed")
+        try:
+            return take(fetch(path))
+        except PeninkError as error:
+            raise type(error)(f"{what}: {error.message}") from None
+
+    def number(name: str, default: float, least: float, most: float) -> float:
+        return strict_json.number(item[name], f"{place}: {name}", least, most) if name in item else default
+
+    texture_name = strict_json.text(item.get("texture", "crosshatch"), f"{place}: texture")
+    if _SHIPPED.fullmatch(texture_name):
+        try:
+            texture = shipped(texture_name)
+        except PeninkError as error:
+            raise type(error)(f"{place}: {error.message}") from None
+        own = False
+    else:
+        texture, own = member("texture", _texture), True
+    rule = strict_json.text(item.get("rule", "best"), f"{place}: rule")
+    if rule not in RULES:
+        raise FormatError(f"{place}: rule {strict_json.quoted(rule)}; known are {', '.join(RULES)}")
+    return Layer(
+        samples=member("samples", lambda data: _samples(data, max_pixels)),
+        edges=member("edges", lambda data: _edges(data, max_pixels)) if "edges" in item else None,
+        texture=texture,
+        texture_name=None if own else texture_name,
+        name=strict_json.text(item["name"], f"{place}: name") if "name" in item else None,
+        levels=strict_json.whole(item.get("levels", 64), f"{place}: levels", 2, 65536),
+        pen_pt=_length(item, "pen", MAX_PEN, place) if "pen" in item else None,
+        gamma=number("gamma", 1.0, 0.05, 20.0),
+        rule=rule,
+        seed=strict_json.whole(item.get("seed", 0), f"{place}: seed", 0, 2**63 - 1),
+        outline=_outline(item["outline"], f"{place}: outline") if "outline" in item else None,
+    )
+
+
+def _outline(item: Any, place: str) -> OutlineChoice:
+    if not isinstance(item, dict):
+        raise FormatError(f"{place} is {strict_json.quoted(item)}; an object is needed")
+    default = OutlineChoice()
+    even = item.get("even", default.even)
+    if type(even) is not bool:
+        raise FormatError(f"{place}: even is {strict_json.quoted(even)}; true or false is needed")
+    regions = strict_json.pairs(item.get("regions", []), f"{place}: regions", f"{place}: region").tolist()
+    return OutlineChoice(
+        pen_pt=_length(item, "pen", MAX_PEN, place) if "pen" in item else default.pen_pt,
+        even=even,
+        min_strength=strict_json.number(item.get("min_strength", 0), f"{place}: min_strength", 0, 1),
+        min_length=strict_json.number(item.get("min_length", 0), f"{place}: min_length", 0, edge_list.MAX_SIDE),
+        regions=tuple((x, y) for x, y in regions),
+    )
+
+
+def _length(item: dict[str, Any], name: str, most: float, place: str = "") -> float:
+    what = f"{place}: {name}" if place else name
+    return strict_json.number(strict_json.member(item, name, place), what, 0.01, most)
+
+
+def _samples(data: bytes, max_pixels: int) -> GreyImage:
+    if data.startswith(compact.SAMPLES):
+        return compact.samples_from(data, max_pixels)
+    return pgm.read(io.BytesIO(data), "", max_pixels)
+
+
+def _edges(data: bytes, max_pixels: int) -> EdgeList:
+    if data.startswith(compact.EDGES):
+        return compact.edges_from(data)
+    return edge_list.read(io.BytesIO(data), "", max_pixels)
+
+
+def _texture(data: bytes) -> Texture:
+    if data.startswith(compact.TEXT):
+        data = compact.text_from(data)
+    return texture_format.read(io.BytesIO(data), "")
+
+
+# ------------------------------------------------------------------------------ writing
+
+
+def members(illustration: Illustration) -> dict[str, bytes]:
+    """Manifest and compact members by name, as an archive holds them; defaults are not written."""
+    files: dict[str, bytes] = {MANIFEST: b""}
+    layers = []
+    for i, layer in enumerate(illustration.layers):
+        rows, columns = layer.samples.values.shape
+        item: dict[str, Any] = {} if layer.name is None else {"name": layer.name}
+        item["samples"] = f"{i}.samples"
+        files[item["samples"]] = compact.samples_bytes(layer.samples)
+        if layer.edges is not None:
+            item["edges"] = f"{i}.edges"
+            files[item["edges"]] = compact.edges_bytes(layer.edges, compact.GRID * columns, compact.GRID * rows)
+        if layer.texture_name is None:
+            item["texture"] = f"{i}.texture"
+            files[item["texture"]] = compact.text_bytes(_texture_bytes(layer.texture))
+        elif layer.texture_name != "crosshatch":
+            item["texture"] = layer.texture_name
+        for name, value, default in (
+            ("levels", layer.levels, 64),
+            ("pen", layer.pen_pt, None),
+            ("gamma", layer.gamma, 1.0),
+            ("rule", layer.rule, "best"),
+            ("seed", layer.seed, 0),
+        ):
+            if value != default:
+                item[name] = _plain(value)
+        if layer.outline is not None:
+            item["outline"] = _outline_item(layer.outline)
+        layers.append(item)
+    manifest = {
+        "format": FORMAT, "version": 1, "width": _plain(illustration.width), "height": _plain(illustration.height),
+        "layers": layers,
+    }  # fmt: skip
+    files[MANIFEST] = json.dumps(manifest, separators=(",", ":")).encode("ascii")
+    return files
+
+
+def _outline_item(outline: OutlineChoice) -> dict[str, Any]:
+    default = OutlineChoice()
+    item = {}
+    for name, value, usual in (
+        ("pen", outline.pen_pt, default.pen_pt),
+        ("even", outline.even, default.even),
+        ("min_strength", outline.min_strength, default.min_strength),
+        ("min_length", outline.min_length, default.min_length),
+        ("regions", [[_plain(x), _plain(y)] for x, y in outline.regions], []),
+    ):
+        if value != usual:
+            item[name] = _plain(value)
+    return item
+
+
+def _plain(value: Any) -> Any:
+    """A number to four decimals, without a point where it is whole; anything else as it is."""
+    if not isinstance(value, float):
+        return value
+    value = round(value, 4)
+    return int(value) if value.is_integer() else value
+
+
+def rounded(illustration: Illustration) -> Illustration:
+    """What `read` gives back of what `members` writes: samples at their levels, edges and numbers as written.
+
+    An illustration is worked with in this form only, so that one read from loose files and one
+    unpacked draw the same strokes. Its edges must lie on the grid (`arrangement.quantisation`).
+    """
+    layers = []
+    for layer in illustration.layers:
+        rows, columns = layer.samples.values.shape
+        edges, texture, outline = layer.edges, layer.texture, layer.outline
+        if edges is not None:
+            edges = compact.edges_from(compact.edges_bytes(edges, compact.GRID * columns, compact.GRID * rows))
+        if layer.texture_name is None:
+            texture = _texture(_texture_bytes(texture))
+        if outline is not None:
+            outline = _outline(_outline_item(outline), "outline")
+        layers.append(
+            replace(
+                layer, samples=compact.requantised(layer.samples, layer.levels), edges=edges, texture=texture,
+                pen_pt=_plain(layer.pen_pt), gamma=float(_plain(layer.gamma)), outline=outline,
+            )
+        )
+    return Illustration(_plain(illustration.width), _plain(illustration.height), tuple(layers))
+
+
+def _texture_bytes(texture: Texture) -> bytes:
+    out = io.BytesIO()
+    texture_format.write(out, texture)
+    return out.getvalue()

@@ -1,0 +1,137 @@
+"""The compact members: nothing is lost, nothing depends on order, nothing bad is swallowed."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from penink_cli.arrangement import quantisation, validity
+from penink_cli.errors import FormatError, LimitError, PeninkError
+from penink_cli.formats import _compact, compact
+from penink_cli.model import EdgeList, GreyImage
+from tests.illustration.conftest import grey, square
+
+
+def as_set(edges: EdgeList) -> set[tuple]:
+    """Edges by the places of their ends, with strengths."""
+    strength = edges.strength if edges.strength is not None else np.zeros(len(edges.edges))
+    return {
+        (*sorted((tuple(edges.vertices[a]), tuple(edges.vertices[b]))), float(s))
+        for (a, b), s in zip(edges.edges, strength)
+    }
+
+
+def random_arrangement(seed: int, columns: int, rows: int) -> EdgeList:
+    """What remains of random segments once they are on a coarse grid: many junctions and rings."""
+    rng = np.random.default_rng(seed)
+    n = int(rng.integers(2, 60))
+    ends = rng.integers(0, n, (2 * n, 2))
+    ends = ends[ends[:, 0] != ends[:, 1]]
+    tangle = EdgeList(40, 30, rng.random((n, 2)) * (40, 30), ends, rng.integers(0, 17, len(ends)) / 16)
+    return quantisation.quantise(tangle, columns, rows)
+
+
+def test_the_compiled_coder_is_under_test():
+    assert _compact.COMPILED
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.integers(0, 2**32), st.sampled_from([1, 2, 63, 100, 255, 65535]), st.integers(1, 20), st.integers(1, 20))
+def test_samples_come_back_exactly(seed, maxval, height, width):
+    rng = np.random.default_rng(seed)
+    values = rng.integers(0, maxval + 1, (height, width))
+    if seed % 2:  # flat stretches
+        values = np.repeat(values[:, :1], width, axis=1)
+    image = GreyImage(values.astype(np.uint8 if maxval < 256 else np.uint16), maxval)
+    back = compact.samples_from(compact.samples_bytes(image), 10**6)
+    assert back.maxval == maxval
+    assert back.values.dtype == image.values.dtype
+    assert np.array_equal(back.values, image.values)
+
+
+def test_samples_are_small():
+    smooth = (np.add.outer(np.arange(128), np.arange(128)) // 5).astype(np.uint8)
+    assert len(compact.samples_bytes(GreyImage(smooth, 63))) < 600
+    white = GreyImage(np.full((128, 128), 63, np.uint8), 63)
+    assert len(compact.samples_bytes(white)) < 30
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_edges_come_back_exactly_and_in_an_order_of_their_own(seed):
+    edges = random_arrangement(seed, 80, 60)
+    packed = compact.edges_bytes(edges, 80, 60)
+    back = compact.edges_from(packed)
+    assert as_set(back) == as_set(edges)
+    validity.check(back)
+    rng = np.random.default_rng(seed)
+    moved, order = rng.permutation(len(edges.vertices)), rng.permutation(len(edges.edges))
+    vertices = np.empty_like(edges.vertices)
+    vertices[moved] = edges.vertices
+    assert edges.strength is not None
+    shuffled = EdgeList(40, 30, vertices, moved[edges.edges][order][:, ::-1], edges.strength[order])
+    assert compact.edges_bytes(shuffled, 80, 60) == packed
+
+
+def test_text_comes_back():
+    text = b'{"points": [[1.5, 2.25], [3, 4]]}\n' * 50
+    packed = compact.text_bytes(text)
+    assert compact.text_from(packed) == text
+    assert len(packed) < 120
+    assert compact.text_from(compact.text_bytes(b"")) == b""
+
+
+PACKED = {
+    "samples": (compact.samples_bytes(grey()), lambda data: compact.samples_from(data, 2000)),
+    "edges": (compact.edges_bytes(quantisation.quantise(square(), 384, 256), 384, 256), compact.edges_from),
+    "text": (compact.text_bytes(b"the quick brown fox jumps over the lazy dog"), compact.text_from),
+}
+
+
+@pytest.mark.parametrize("kind", PACKED)
+def test_truncated_members_are_refused(kind):
+    packed, read = PACKED[kind]
+    for size in range(len(packed) - 6):
+        with pytest.raises(FormatError):
+            read(packed[:size])
+    with pytest.raises(FormatError, match="after its end"):
+        read(packed + b"123456789")
+
+
+@pytest.mark.parametrize("kind", PACKED)
+def test_damaged_members_give_an_error_or_something_sound(kind):
+    packed, read = PACKED[kind]
+    rng = np.random.default_rng(1)
+    for _ in range(300):
+        bad = bytearray(packed)
+        for at in rng.integers(0, len(bad), 3):
+            bad[at] = rng.integers(0, 256)
+        try:
+            found = read(bytes(bad))
+        except PeninkError:
+            continue
+        if kind == "samples":
+            assert found.values.max() <= found.maxval
+
+
+def test_a_few_bytes_cannot_announce_more_than_is_allowed():
+    with pytest.raises(LimitError, match="allowed in all"):
+        compact.samples_from(compact.SAMPLES + b"\xff\xff\x7f\xff\xff\x7f\x3f" + bytes(20), 10**12)
+    with pytest.raises(FormatError, match="truncated"):
+        compact.edges_from(compact.EDGES + b"\x10\x10\x10\x10\xff\xff\x7f\x00" + bytes(20))
+    with pytest.raises(LimitError):
+        compact.text_from(compact.TEXT + b"\xff\xff\xff\x7f" + bytes(20))
+
+
+@pytest.mark.parametrize(
+    "maxval, levels, most", [(255, 64, 63), (63, 64, 63), (40, 64, 40), (65535, 256, 255), (1, 2, 1)]
+)
+def test_requantising_keeps_paper_and_ink_and_what_is_coarse_already(maxval, levels, most):
+    values = np.linspace(0, maxval, 8).round().astype(np.uint16 if maxval > 255 else np.uint8)[None]
+    image = compact.requantised(GreyImage(values, maxval), levels)
+    assert image.maxval == most
+    assert image.values[0, 0] == 0 and image.values[0, -1] == most
+    assert np.abs(image.values / most - values / maxval).max() <= 0.5 / most + 1e-12
+    again = compact.requantised(image, levels)
+    assert np.array_equal(again.values, image.values)
