@@ -29,6 +29,8 @@ SUBCOMMANDS = {
     "blast": ("blast", "Turn grey into pen strokes of the same tone."),
     "pack": ("pack", "Pack an illustration and its members in one small file."),
     "to-ps": ("to_ps", "Write strokes as PostScript."),
+    "to-svg": ("to_svg", "Write strokes as SVG, for drawing programs, the web and pen plotters."),
+    "to-pdf": ("to_pdf", "Write strokes as a PDF page of vector paths."),
 }
 
 

@@ -1,3 +1,6 @@
+cdef int side_of_query(double ax, double ay, double bx, double by, double qx, double qy) noexcept nogil
+cdef int side_of_vertex(double px, double py, double qx, double qy, double ax, double ay) noexcept nogil
+
 cdef class Scene:
     cdef list arrays
     cdef readonly int width, height

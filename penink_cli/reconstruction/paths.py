@@ -21,6 +21,19 @@ def reach(radius: float, widening: float = 1.0) -> float:
     return BLOCK * widening + radius * widening
 
 
+def spill(radius: float) -> int:
+    """Cells by which the ellipse of any pixel and any of its 16 samples can reach beyond their 3 × 3 cells, rounded up.
+
+    An ellipse with foci d apart, δ of it along an axis, ends ½ √(δ² + 2 d r + r²) − δ/2 beyond the farther focus
+    along that axis; here δ is 1 … 2 and d at most √(δ² + 4). For r = 1 that is 0.78.
+    """
+    across = max(
+        0.5 * math.sqrt(delta * delta + 2.0 * radius * math.hypot(delta, 2.0) + radius * radius) - 0.5 * delta
+        for delta in (1.0, 1.25, 1.5, 1.75, 2.0)
+    )
+    return math.ceil(across + 0.1)
+
+
 def sample_units(points: Floats, width: int, height: int, frame: tuple[float, float]) -> Floats:
     """Points (n, 2) of an image frame in sample units of width × height samples: samples are at the integers."""
     return np.ascontiguousarray(points * (float(width), float(height)) / frame - 0.5)

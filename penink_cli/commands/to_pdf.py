@@ -1,0 +1,42 @@
+"""``penink to-pdf``."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import click
+
+from penink_cli.formats import pdf
+from penink_cli.formats.page import lay_out
+from penink_cli.layer_options import colour_option, files_argument, page_options, read_layers
+from penink_cli.options import output_options
+from penink_cli.streams import writing
+
+
+@click.command(name="to-pdf")
+@files_argument
+@page_options
+@colour_option
+@output_options
+def to_pdf(
+    files: tuple[str, ...],
+    paper: str | None,
+    margin: float,
+    landscape: bool,
+    colours: tuple[tuple[float, float, float], ...],
+    output: str | None,
+    **_: Any,
+) -> None:
+    """Write strokes as a PDF page of vector paths.
+
+    The page has the picture's size, or is the --paper. Several FILEs are layers, the first at the
+    bottom, which viewers can switch on and off.
+
+    \b
+    penink to-pdf photo.strokes.jsonl -o photo.pdf
+    penink to-pdf --paper letter --margin 0.5in photo.strokes.jsonl -o photo.pdf
+    """
+    layers = read_layers(files)
+    page = lay_out(layers, paper, margin, landscape)
+    with writing(output) as out:
+        pdf.write(out, layers, page, colours)

@@ -1,0 +1,61 @@
+"""``penink to-svg``."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import click
+
+from penink_cli.formats import svg
+from penink_cli.formats.page import lay_out
+from penink_cli.layer_options import (
+    colour_option,
+    files_argument,
+    for_a_pen,
+    page_options,
+    read_layers,
+    report_travel,
+    travel_options,
+)
+from penink_cli.options import output_options, verbose_option
+from penink_cli.streams import writing
+
+
+@click.command(name="to-svg")
+@files_argument
+@page_options
+@colour_option
+@travel_options
+@verbose_option
+@output_options
+def to_svg(
+    files: tuple[str, ...],
+    paper: str | None,
+    margin: float,
+    landscape: bool,
+    colours: tuple[tuple[float, float, float], ...],
+    order: bool,
+    join: float,
+    speed: float | None,
+    verbose: bool,
+    output: str | None,
+    **_: Any,
+) -> None:
+    """Write strokes as SVG, for drawing programs, the web and pen plotters.
+
+    Each stroke is a path of its real width, in millimetres. Several FILEs are layers, the first
+    at the bottom, and Inkscape and vpype see them as layers. With --order a plotter draws them
+    with little travel between them.
+
+    \b
+    penink to-svg photo.strokes.jsonl -o photo.svg
+    penink to-svg --order --speed 50mm --paper a4 --margin 1cm photo.strokes.jsonl -o photo.svg
+    """
+    layers = read_layers(files)
+    page = lay_out(layers, paper, margin, landscape)
+    if order:
+        layers = for_a_pen(layers, join, speed, verbose)
+    else:
+        report_travel(layers, layers, speed, verbose)
+    with writing(output, binary=False) as out:
+        svg.write(out, layers, page, colours)
