@@ -17,7 +17,8 @@ TO_PS   ?=
 PREVIEW_DPI ?= 150
 
 .DELETE_ON_ERROR:
-.SECONDARY:
+.PRECIOUS: %.edges.json %.samples.pgm %.reduced.pgm %.grey.pgm %.strokes.jsonl %.ps
+.PRECIOUS: %.detect.options %.extract.options %.reduce.options %.enlarge.options %.blast.options %.to-ps.options
 
 # NAME.STAGE.options holds the options a stage was last run with; it gets a new date only when they
 # change, so depending on it is depending on the options.

@@ -25,11 +25,13 @@ def folder(tmp_path):
 def make(folder, *arguments):
     program = f"PENINK={sys.executable} -m penink_cli"
     command = ["make", "--no-print-directory", program, "BLAST=--texture crosshatch --width 1in", *arguments]
-    return subprocess.run(command, cwd=folder, env=environment(MAKEFLAGS=""), capture_output=True, text=True, check=False)
+    env = environment(MAKEFLAGS="")
+    return subprocess.run(command, cwd=folder, env=env, capture_output=True, text=True, check=False)
 
 
 def remade(done) -> list[str]:
-    return [line.split("-o ")[1].split()[0] for line in done.stdout.splitlines() if "penink_cli" in line and "-o " in line]
+    ran = [line for line in done.stdout.splitlines() if "penink_cli" in line and "-o " in line]
+    return [line.split("-o ")[1].split()[0] for line in ran]
 
 
 def test_one_file_a_stage_and_nothing_twice(folder):
