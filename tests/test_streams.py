@@ -127,7 +127,7 @@ def test_devices_are_written_straight():
     for device in ("/dev/null", "/dev/zero"):
         put(device, b"x")
         assert stat.S_ISCHR(os.stat(device).st_mode)
-    with pytest.raises(StreamError, match="^/dev/full: cannot be written: No space left on device$"):
+    with pytest.raises(StreamError, match=r"^/dev/full: cannot be written: No space left on device$"):
         put("/dev/full", b"x")
 
 

@@ -157,25 +157,37 @@ _PASSES = ((0, 0, 8, 8), (4, 0, 8, 8), (0, 4, 4, 8), (2, 0, 4, 4), (0, 2, 2, 4),
 
 
 def _check_png(encoded: bytes, width: int, height: int) -> None:
-    """Raise FormatError where the compressed data ends before the last row, which Pillow would leave black."""
+    """Raise FormatError for a PNG that is cut short or damaged, where Pillow would show black rows instead.
+
+    Every chunk is whole up to the last, and the compressed data hold every row and end with their checksum.
+    """
     bits, colour, _, _, interlace = encoded[24:29]
-    per_pixel = bits * _CHANNELS.get(colour, 4)
-    passes = _PASSES if interlace else ((0, 0, 1, 1),)
-    needed = 0
-    for x, y, step_x, step_y in passes:
-        columns, lines = -(-(width - x) // step_x), -(-(height - y) // step_y)
-        if columns > 0 and lines > 0:
-            needed += lines * (1 + (columns * per_pixel + 7) // 8)
-    found, inflate, at = 0, zlib.decompressobj(), 8
-    while at + 8 <= len(encoded) and found < needed:
+    needed = _png_bytes(width, height, bits * _CHANNELS.get(colour, 4), bool(interlace))
+    found, inflate, at, name = 0, zlib.decompressobj(), 8, b""
+    while name != b"IEND":
+        if at + 12 > len(encoded):
+            raise FormatError("truncated: the PNG has no end")
         length, name = struct.unpack_from(">I4s", encoded, at)
-        if name == b"IEND":
-            break
-        if name == b"IDAT":
-            piece = encoded[at + 8 : at + 8 + length]
-            while piece and found < needed and not inflate.eof:
-                found += len(inflate.decompress(piece, BAND))
-                piece = inflate.unconsumed_tail
-        at += 12 + length
-    if found < needed:
+        end = at + 8 + length
+        if end + 4 > len(encoded):
+            raise FormatError(f"truncated: {len(encoded)} of at least {end + 4} PNG bytes")
+        content = encoded[at + 8 : end]
+        if zlib.crc32(content, zlib.crc32(name)) != int.from_bytes(encoded[end : end + 4], "big"):
+            raise FormatError(f"damaged PNG photograph: checksum of its chunk {printable(name.decode('latin-1'))}")
+        # More than is needed is not looked at: it may be a bomb, and other programs ignore it.
+        while name == b"IDAT" and content and found <= needed and not inflate.eof:
+            found += len(inflate.decompress(content, BAND))
+            content = inflate.unconsumed_tail
+        at = end + 4
+    if found < needed or (found == needed and not inflate.eof):
         raise FormatError(f"truncated: {found} of {needed} bytes of PNG rows")
+
+
+def _png_bytes(width: int, height: int, bits_per_pixel: int, interlaced: bool) -> int:
+    """Bytes of all rows of all passes, each with the byte that names its filter."""
+    total = 0
+    for x, y, step_x, step_y in _PASSES if interlaced else ((0, 0, 1, 1),):
+        columns, rows = -(-(width - x) // step_x), -(-(height - y) // step_y)
+        if columns > 0 and rows > 0:
+            total += rows * (1 + (columns * bits_per_pixel + 7) // 8)
+    return total

@@ -243,6 +243,23 @@ def test_a_photograph_cut_short(kind, part):
         read(data[: int(part * len(data))])
 
 
+@pytest.mark.parametrize("kind", (*FORMATS, "PPM"))
+def test_a_photograph_one_byte_short(kind):
+    data = saved(Image.fromarray(COLOUR), kind)
+    with pytest.raises(FormatError):
+        read(data[:-1])
+
+
+def test_any_damage_to_a_png_is_found():
+    data = saved(Image.fromarray(COLOUR), "PNG")
+    for at in range(len(data)):
+        damaged = bytearray(data)
+        damaged[at] ^= 0x10
+        with pytest.raises(PeninkError):
+            read(bytes(damaged))
+    assert close(read(data + b"and more"), luma(COLOUR))
+
+
 @pytest.mark.parametrize("kind", FORMATS)
 def test_more_pixels_than_allowed(kind):
     data = saved(Image.new("L", (200, 60)), kind)

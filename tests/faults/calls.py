@@ -1,0 +1,92 @@
+"""How to call each subcommand, and small inputs that belong together; every fault test runs over these."""
+
+from __future__ import annotations
+
+import io
+import json
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from penink_cli.formats import edge_list, pgm
+from penink_cli.model import EdgeList, GreyImage
+
+WIDTH, HEIGHT = 24, 18
+
+
+@dataclass(frozen=True)
+class Call:
+    """One way to call a subcommand.
+
+    reads: the file, of `inputs`, that it takes by name or on standard input; None where it reads none.
+    arguments: all others; a name of `inputs` stands for that file.
+    """
+
+    reads: str | None
+    arguments: tuple[str, ...] = ()
+
+
+CALLS = {
+    "detect-edges": Call("photo.png"),
+    "extract-samples": Call("photo.png", ("-e", "photo.edges.json")),
+    "reduce": Call("samples.pgm", ("-e", "photo.edges.json", "--factor", "2")),
+    "enlarge": Call("samples.pgm", ("-e", "photo.edges.json", "--scale", "3")),
+    "blast": Call("samples.pgm", ("--texture", "crosshatch", "--width", "0.3in", "-e", "photo.edges.json")),
+    "to-ps": Call("photo.strokes.jsonl"),
+    "to-svg": Call("photo.strokes.jsonl"),
+    "to-pdf": Call("photo.strokes.jsonl"),
+}
+
+
+def encoded(write: object, value: object) -> bytes:
+    out = io.BytesIO()
+    write(out, value)  # type: ignore[operator]
+    return out.getvalue()
+
+
+def disc() -> GreyImage:
+    """A dark disc with a soft shade on light ground."""
+    y, x = np.mgrid[:HEIGHT, :WIDTH]
+    inside = (x - 12) ** 2 + (y - 9) ** 2 < 30
+    return GreyImage(np.where(inside, 40 + 3 * y, 200 + x).astype(np.uint8))
+
+
+def frame(points: list[tuple[float, float]]) -> EdgeList:
+    """A closed chain through the points."""
+    n = len(points)
+    edges = np.stack([np.arange(n), (np.arange(n) + 1) % n], axis=1)
+    return EdgeList(WIDTH, HEIGHT, np.array(points, float), edges, np.full(n, 0.5))
+
+
+def strokes_text(width: float, height: float, *strokes: tuple[float, list[list[float]]]) -> bytes:
+    lines = [{"format": "penink-strokes", "version": 1, "width": width, "height": height}]
+    lines += [{"width": pen, "points": points} for pen, points in strokes]
+    return "".join(json.dumps(line) + "\n" for line in lines).encode()
+
+
+def make_inputs(folder: Path) -> None:
+    """Write the files that CALLS names."""
+    from PIL import Image
+
+    image = disc()
+    Image.fromarray(image.values).save(folder / "photo.png")
+    (folder / "samples.pgm").write_bytes(encoded(pgm.write, image))
+    octagon = [(7.5, 6), (10, 3.5), (14, 3.5), (16.5, 6), (16.5, 12), (14, 14.5), (10, 14.5), (7.5, 12)]
+    (folder / "photo.edges.json").write_bytes(encoded(edge_list.write, frame(octagon)))
+    drawn = strokes_text(
+        72,
+        54,
+        (0.5, [[3, 3], [10, 3], [20, 8], [30, 9]]),
+        (0.4, [[40, 40]]),
+        (1, [[5, 50], [9, 40], [60, 40], [70, 5]]),
+    )
+    (folder / "photo.strokes.jsonl").write_bytes(drawn)
+
+
+def arguments(name: str, folder: Path, by_name: bool = True, inputs: Path | None = None) -> list[str]:
+    """``name OPTIONS [FILE]``, with the paths of the files in ``folder``."""
+    call = CALLS[name]
+    known = {path.name for path in (inputs or folder).iterdir()}
+    words = [str(folder / word) if word in known else word for word in call.arguments]
+    return [name, *words, *([str(folder / call.reads)] if by_name and call.reads else [])]
