@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gzip
 import io
 from collections.abc import Callable
 from importlib import resources
@@ -16,7 +17,7 @@ from penink_cli.streams import reading, source_name
 
 F = TypeVar("F", bound=Callable[..., Any])
 
-ENDING = ".texture.json"
+ENDING = ".texture.json.gz"
 
 texture_option = click.option(
     "-t",
@@ -43,4 +44,4 @@ def find_texture(name: str) -> Texture:
     if name not in shipped():
         raise ParameterError(f"no texture {printable(name, 60)}; known are {', '.join(shipped())}, or give a file")
     tile = resources.files("penink_cli.textures") / "tiles" / (name + ENDING)
-    return texture_format.read(io.BytesIO(tile.read_bytes()), tile.name)
+    return texture_format.read(io.BytesIO(gzip.decompress(tile.read_bytes())), tile.name)

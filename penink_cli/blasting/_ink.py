@@ -11,7 +11,7 @@ whose order could depend on anything but the input, so the bytes are the same ev
 """
 
 import cython
-from cython.cimports.libc.math import ceil, fabs, floor, sqrt
+from cython.cimports.libc.math import ceil, fabs, fabsf, sqrt
 
 COMPILED = cython.compiled
 
@@ -79,69 +79,82 @@ def _bar(
     c1: cython.Py_ssize_t
     lo: cython.double
     hi: cython.double
-    a: cython.double
-    b: cython.double
     d: cython.double
     h: cython.double
+    # across a row d below the start, the rectangle reaches from the larger of two lines in d
+    # (its end and its side) to the smaller of two others
+    end_rate: cython.double = 0.0
+    end_lo: cython.double = -1e30
+    end_hi: cython.double = 1e30
+    side_rate: cython.double = 0.0
+    side_lo: cython.double = -1e30
+    side_hi: cython.double = 1e30
     total: cython.int = 0
-    rect: cython.bint = length > 1e-9
-    if rect:
+    if length > 1e-9:
         ux /= length
         uy /= length
+        # a bar along a row or a column is tilted by nothing that shows
+        if fabs(ux) < 1e-7:
+            ux = 1e-7
+        if fabs(uy) < 1e-7:
+            uy = 1e-7
+        end_rate = -uy / ux
+        h = length / ux
+        end_lo = h if h < 0.0 else 0.0
+        end_hi = 0.0 if h < 0.0 else h
+        side_rate = ux / uy
+        side_hi = fabs(r / uy)
+        side_lo = -side_hi
     else:
+        end_lo = 1e30
         ux = 1.0
-        uy = 0.0
     side = r if (cap0 or cap1) else r * fabs(ux)
     low = (y0 if y0 < y1 else y1) - side
     high = (y1 if y0 < y1 else y0) + side
     if high <= 0.0 or low >= rows:
         return 0
-    first = cython.cast(cython.Py_ssize_t, ceil(low - 0.5)) if low > 0.5 else 0
-    last = cython.cast(cython.Py_ssize_t, ceil(high - 0.5)) if high < rows else rows
+    # rounding is by truncation, for what is not negative: ceil is a call where SSE 4.1 may not be assumed
+    first = cython.cast(cython.Py_ssize_t, low + 0.5) if low > 0.5 else 0
+    last = cython.cast(cython.Py_ssize_t, high + 0.5) if high < rows else rows
     for row in range(first, last):
         d = row + 0.5 - y0
-        lo = 1e30
-        hi = -1e30
-        if rect:
-            # along the bar 0 … length, across it -r … r
-            a = -1e30
-            b = 1e30
-            if fabs(ux) > 1e-9:
-                h = -d * uy / ux
-                if ux > 0.0:
-                    a = h
-                    b = h + length / ux
-                else:
-                    a = h + length / ux
-                    b = h
-            elif d * uy < 0.0 or d * uy > length:
-                b = -1e30
-            if fabs(uy) > 1e-9:
-                h = d * ux / uy
-                side = fabs(r / uy)
-                a = max(a, h - side)
-                b = min(b, h + side)
-            elif fabs(d) > r:
-                b = -1e30
-            if a < b:
-                lo = x0 + a
-                hi = x0 + b
+        lo = end_lo + end_rate * d
+        h = side_lo + side_rate * d
+        lo = h if h > lo else lo
+        hi = end_hi + end_rate * d
+        h = side_hi + side_rate * d
+        hi = h if h < hi else hi
+        if lo < hi:
+            lo += x0
+            hi += x0
+        else:
+            lo = 1e30
+            hi = -1e30
         if cap0 and fabs(d) < r:
             h = sqrt(r * r - d * d)
-            lo = min(lo, x0 - h)
-            hi = max(hi, x0 + h)
+            lo = x0 - h if x0 - h < lo else lo
+            hi = x0 + h if x0 + h > hi else hi
         if cap1:
             d = row + 0.5 - y1
             if fabs(d) < r:
                 h = sqrt(r * r - d * d)
-                lo = min(lo, x1 - h)
-                hi = max(hi, x1 + h)
+                lo = x1 - h if x1 - h < lo else lo
+                hi = x1 + h if x1 + h > hi else hi
         if lo < hi and hi > 0.0 and lo < columns:
-            c0 = cython.cast(cython.Py_ssize_t, ceil(lo - 0.5)) if lo > 0.5 else 0
-            c1 = cython.cast(cython.Py_ssize_t, ceil(hi - 0.5)) if hi < columns else columns
+            c0 = cython.cast(cython.Py_ssize_t, lo + 0.5) if lo > 0.5 else 0
+            c1 = cython.cast(cython.Py_ssize_t, hi + 0.5) if hi < columns else columns
             if c0 < c1:
                 total += _span(bits, counts, row, c0, c1, write)
     return total
+
+
+@cython.cfunc
+@cython.inline
+@cython.nogil
+@cython.exceptval(check=False)
+def _cell(subpixels: cython.double) -> cython.Py_ssize_t:
+    """The row or column of cells that a place is in; -1 before the first."""
+    return cython.cast(cython.Py_ssize_t, subpixels * 0.125) if subpixels >= 0.0 else -1
 
 
 @cython.cfunc
@@ -171,6 +184,7 @@ def _splat(
     left: cython.Py_ssize_t = x - r if x > r else 0
     right: cython.Py_ssize_t = x + r + 1 if x + r + 1 < residual.shape[1] else residual.shape[1]
     here: cython.float = guide[y, x]
+    none: cython.float = 0.0  # a literal would be a double, and the loop four times slower
     i: cython.Py_ssize_t
     j: cython.Py_ssize_t
     n: cython.Py_ssize_t = right - left
@@ -184,7 +198,7 @@ def _splat(
         out = cython.address(residual[i, left])
         for j in range(n):
             w = ink * k[j]
-            out[j] -= w if fabs(g[j] - here) < step else 0.0
+            out[j] -= w if fabsf(g[j] - here) < step else none
 
 
 @cython.cfunc
@@ -218,8 +232,8 @@ def _draw(
         ink = _bar(bits, counts, points[p0, 0] + ox, points[p0, 1] + oy, points[p0, 0] + ox, points[p0, 1] + oy,
                    r, True, False, True)
         if splat and ink:
-            x = cython.cast(cython.Py_ssize_t, floor((points[p0, 0] + ox) * 0.125))
-            y = cython.cast(cython.Py_ssize_t, floor((points[p0, 1] + oy) * 0.125))
+            x = _cell(points[p0, 0] + ox)
+            y = _cell(points[p0, 1] + oy)
             if 0 <= x < counts.shape[1] and 0 <= y < counts.shape[0]:
                 _splat(residual, guide, kernel, y, x, ink * 0.015625, step)
         return ink
@@ -240,8 +254,8 @@ def _draw(
         fresh += new
         # two points to a splat: they are about a cell apart and the kernel is much wider
         if splat and ink and (last or (i - p0) & 1):
-            x = cython.cast(cython.Py_ssize_t, floor((points[i, 0] + ox) * 0.125))
-            y = cython.cast(cython.Py_ssize_t, floor((points[i, 1] + oy) * 0.125))
+            x = _cell(points[i, 0] + ox)
+            y = _cell(points[i, 1] + oy)
             if 0 <= x < counts.shape[1] and 0 <= y < counts.shape[0]:
                 _splat(residual, guide, kernel, y, x, ink * 0.015625, step)
             ink = 0
@@ -252,18 +266,16 @@ def paint(
     bits: cython.uchar[:, :, ::1], counts: cython.uchar[:, ::1],
     residual: cython.float[:, ::1], guide: cython.float[:, ::1], kernel: cython.float[:, ::1], step: cython.float,
     points: cython.double[:, ::1], first: cython.longlong[::1], widths: cython.double[::1],
-    order: cython.longlong[::1], gain: cython.double, splat: cython.bint,
-) -> cython.longlong:
-    """Ink the polylines named in order, unconditionally. Returns the number of subpixels newly inked."""
-    fresh: cython.longlong = 0
+    order: cython.longlong[::1], gain: cython.double, splat: cython.bint, fresh: cython.longlong[::1],
+):
+    """Ink the polylines named in order, unconditionally. fresh: (n,) out, how many subpixels each newly inks."""
     k: cython.Py_ssize_t
     i: cython.Py_ssize_t
     with cython.nogil:
         for k in range(order.shape[0]):
             i = order[k]
-            fresh += _draw(bits, counts, residual, guide, kernel, step, points, first[i], first[i + 1] - 1, 0.0, 0.0,
-                           widths[i], gain, splat)
-    return fresh
+            fresh[i] = _draw(bits, counts, residual, guide, kernel, step, points, first[i], first[i + 1] - 1, 0.0, 0.0,
+                             widths[i], gain, splat)
 
 
 @cython.cfunc
@@ -307,8 +319,8 @@ def _gains(
             mx = points[q, 0] + 0.5 * dx + ox
             my = points[q, 1] + 0.5 * dy + oy
         ink[i] *= 0.015625
-        x = cython.cast(cython.Py_ssize_t, floor(mx * 0.125))
-        y = cython.cast(cython.Py_ssize_t, floor(my * 0.125))
+        x = _cell(mx)
+        y = _cell(my)
         x = 0 if x < 0 else (counts.shape[1] - 1 if x >= counts.shape[1] else x)
         y = 0 if y < 0 else (counts.shape[0] - 1 if y >= counts.shape[0] else y)
         due[i] = residual[y, x]
@@ -333,7 +345,7 @@ def _gains(
 def _runs(
     n: cython.Py_ssize_t, ink: cython.double[::1], own: cython.double[::1], due: cython.double[::1],
     cost: cython.double, shortest: cython.Py_ssize_t, shortest_wall: cython.Py_ssize_t,
-    wall0: cython.bint, wall1: cython.bint,
+    wall0: cython.bint, wall1: cython.bint, caution: cython.double,
     total: cython.double[::1], best: cython.double[::1], start: cython.longlong[::1],
 ) -> cython.double:
     """The runs of pieces worth drawing: the two states are pen up and pen down.
@@ -352,7 +364,7 @@ def _runs(
     best[0] = 0.0
     start[0] = -1
     for j in range(1, n + 1):
-        total[j] = total[j - 1] + ink[j - 1] * (2.0 * due[j - 1] - own[j - 1])
+        total[j] = total[j - 1] + ink[j - 1] * (2.0 * due[j - 1] - caution * own[j - 1])
         best[j] = best[j - 1]
         start[j] = -1
         i = j - shortest
@@ -382,7 +394,8 @@ def place(
     points: cython.double[:, ::1], first: cython.longlong[::1], widths: cython.double[::1], walls: cython.uchar[::1],
     order: cython.longlong[::1], gain: cython.double,
     shifts: cython.double[::1], spacing: cython.double[::1],
-    whole: cython.bint, strict: cython.bint, cost: cython.double, shortest: cython.double, shortest_wall: cython.double,
+    whole: cython.bint, strict: cython.bint, caution: cython.double, cost: cython.double,
+    shortest: cython.double, shortest_wall: cython.double,
     runs: cython.longlong[:, :, ::1], moved: cython.double[:, ::1], scratch: cython.double[:, ::1],
     starts: cython.longlong[::1],
 ):
@@ -390,6 +403,8 @@ def place(
 
     Normally that is its best runs; if whole, all of it if that lowers the squared error; if strict, all of it
     unless that makes any place darker than it is due: the paper's rule.
+
+    caution: what a stroke adds itself counts so many times: 1 is where the squared error is least.
     shifts: the sideways moves tried, in units of spacing[i] (subpixels).
     runs: (n, most, 2) out, points first … last of each run of polyline i, -1 where there is none.
     moved: (n, 2) out, the move chosen.
@@ -456,11 +471,11 @@ def place(
                 n = _gains(bits, counts, residual, profile, points, p0, p1, ox, oy, widths[i], gain, ink, own, due)
                 if not whole and not strict:
                     value = _runs(n, ink, own, due, cost, least, least_wall, (walls[i] & 1) != 0, (walls[i] & 2) != 0,
-                                  total, best, starts)
+                                  caution, total, best, starts)
                 elif not strict:
                     value = -cost
                     for found in range(n):
-                        value += ink[found] * (2.0 * due[found] - own[found])
+                        value += ink[found] * (2.0 * due[found] - caution * own[found])
                 else:
                     value = 1.0
                     for found in range(n):
@@ -483,7 +498,7 @@ def place(
                 continue
             if m != shifts.shape[0] - 1:
                 n = _gains(bits, counts, residual, profile, points, p0, p1, bx, by, widths[i], gain, ink, own, due)
-                _runs(n, ink, own, due, cost, least, least_wall, (walls[i] & 1) != 0, (walls[i] & 2) != 0,
+                _runs(n, ink, own, due, cost, least, least_wall, (walls[i] & 1) != 0, (walls[i] & 2) != 0, caution,
                       total, best, starts)
             j = n
             found = 0
@@ -497,6 +512,79 @@ def place(
                       widths[i], gain, True)
                 found += 1
                 j = starts[j]
+
+
+def press(
+    counts: cython.uchar[:, ::1], residual: cython.float[:, ::1], guide: cython.float[:, ::1],
+    kernel: cython.float[:, ::1], step: cython.float, profile: cython.double[::1],
+    points: cython.double[:, ::1], first: cython.longlong[::1], widths: cython.double[::1],
+    lightest: cython.double[::1], heaviest: cython.double[::1],
+    order: cython.longlong[::1], scratch: cython.double[:, ::1],
+):
+    """Change the width of each stroke, one after the other, to where the squared error is least.
+
+    widths: (n,) in and out, subpixels, between lightest and heaviest. The residual is kept up to date to first
+    order only: what a wider stroke newly covers is taken to be as bare as the cells it runs through.
+    """
+    k: cython.Py_ssize_t
+    i: cython.Py_ssize_t
+    j: cython.Py_ssize_t
+    n: cython.Py_ssize_t
+    p0: cython.Py_ssize_t
+    x: cython.Py_ssize_t
+    y: cython.Py_ssize_t
+    dx: cython.double
+    dy: cython.double
+    d: cython.double
+    pull: cython.double
+    resistance: cython.double
+    change: cython.double
+    reach: cython.Py_ssize_t = profile.shape[0]
+    # cells that a subpixel more of width covers newly, by piece; and where the piece is
+    fresh = scratch[0]
+    mx = scratch[1]
+    my = scratch[2]
+    with cython.nogil:
+        for k in range(order.shape[0]):
+            i = order[k]
+            p0 = first[i]
+            n = first[i + 1] - 1 - p0
+            if n < 1:
+                continue
+            pull = 0.0
+            resistance = 0.0
+            for j in range(n):
+                dx = points[p0 + j + 1, 0] - points[p0 + j, 0]
+                dy = points[p0 + j + 1, 1] - points[p0 + j, 1]
+                mx[j] = points[p0 + j, 0] + 0.5 * dx
+                my[j] = points[p0 + j, 1] + 0.5 * dy
+                x = _cell(mx[j])
+                y = _cell(my[j])
+                if x < 0 or y < 0 or x >= counts.shape[1] or y >= counts.shape[0]:
+                    fresh[j] = 0.0
+                    continue
+                fresh[j] = sqrt(dx * dx + dy * dy) * (1.0 - 0.75 * counts[y, x] * 0.015625) * 0.015625
+                pull += fresh[j] * residual[y, x]
+            for j in range(n):
+                resistance += fresh[j] * fresh[j] * profile[0]
+                for x in range(j + 1, n):
+                    dx = mx[x] - mx[j]
+                    dy = my[x] - my[j]
+                    d = 0.5 * sqrt(dx * dx + dy * dy)
+                    if d >= reach:
+                        break
+                    resistance += 2.0 * fresh[j] * fresh[x] * profile[cython.cast(cython.Py_ssize_t, d)]
+            if resistance < 1e-12:
+                continue
+            change = widths[i] + pull / resistance
+            change = lightest[i] if change < lightest[i] else (heaviest[i] if change > heaviest[i] else change)
+            change -= widths[i]
+            widths[i] += change
+            for j in range(n):
+                if fresh[j] > 0.0 and (j & 1 or j == n - 1):
+                    d = fresh[j] + (fresh[j - 1] if j & 1 else 0.0)
+                    d *= change
+                    _splat(residual, guide, kernel, _cell(my[j]), _cell(mx[j]), cython.cast(cython.float, d), step)
 
 
 def gather(
@@ -513,6 +601,7 @@ def gather(
     hi: cython.Py_ssize_t
     w: cython.float
     k: cython.float
+    none: cython.float = 0.0
     o: cython.p_float
     e: cython.p_float
     g: cython.p_float
@@ -532,4 +621,4 @@ def gather(
                     hi = error.shape[1] - j if j > 0 else error.shape[1]
                     for x in range(lo, hi):
                         w = k * e[x + j]
-                        o[x] += w if fabs(g[x + j] - here[x]) < step else 0.0
+                        o[x] += w if fabsf(g[x + j] - here[x]) < step else none

@@ -9,7 +9,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from penink_cli.model import Floats, Ints
 
@@ -33,15 +32,18 @@ def starts(counts: Ints) -> Ints:
 
 @dataclass(frozen=True, eq=False)
 class Polylines:
-    """Curves sampled at even parameters.
-
-    points: (p, 2); first: (n + 1,) curve i owns points[first[i] : first[i + 1]].
-    pieces: (p,) for the point at which a cubic segment's samples begin or go on, how many
-        samples that segment has: the parameter between two points is 1/pieces apart.
-    """
+    """points: (p, 2); first: (n + 1,) polyline i owns points[first[i] : first[i + 1]]."""
 
     points: Floats
     first: Ints
+
+
+def take(lines: Polylines, which: Ints, shift: Floats) -> Polylines:
+    """Copies of some of the polylines (or curves), each moved by shift (n, 2)."""
+    sizes = np.diff(lines.first)[which]
+    begin = starts(sizes)
+    at = np.repeat(lines.first[which] - begin[:-1], sizes) + np.arange(begin[-1])
+    return Polylines(lines.points[at] + np.repeat(shift, sizes, axis=0), begin)
 
 
 def segments_of(first: Ints) -> Ints:
@@ -53,8 +55,10 @@ def evaluate(control: Floats, t: Floats) -> Floats:
     """Points (m, 2) at parameters t (m,) of cubics control (m, 4, 2)."""
     u = 1.0 - t
     w = np.stack([u * u * u, 3 * u * u * t, 3 * u * t * t, t * t * t], axis=1)
-    return w[:, 0, None] * control[:, 0] + w[:, 1, None] * control[:, 1] + (
-        w[:, 2, None] * control[:, 2] + w[:, 3, None] * control[:, 3]
+    return (
+        w[:, 0, None] * control[:, 0]
+        + w[:, 1, None] * control[:, 1]
+        + (w[:, 2, None] * control[:, 2] + w[:, 3, None] * control[:, 3])
     )
 
 
@@ -105,12 +109,11 @@ def blossom(control: Floats, a: Floats, b: Floats) -> Floats:
     return np.stack([at(a, a, a), at(a, a, b), at(a, b, b), at(b, b, b)], axis=1)
 
 
-def cut(points: Floats, first: Ints, pieces: Ints, curve: Ints, a: npt.ArrayLike, b: npt.ArrayLike) -> tuple[Floats, Ints]:
+def cut(points: Floats, first: Ints, pieces: Ints, curve: Ints, a: Floats, b: Floats) -> tuple[Floats, Ints]:
     """Parts of curves: part i is curve[i] from a[i] to b[i], counted in samples (see `sample`), whole or not.
 
     Returns points and first of the parts. A part of a dot is the dot.
     """
-    a, b = np.asarray(a, np.float64), np.asarray(b, np.float64)
     k = segments_of(first)
     seg_begin = starts(k)
     # where each segment begins, counted in samples from the start of its curve

@@ -106,13 +106,15 @@ class Sheet:
         self.step = 2.0
         self.residual = self.tone - self.low_pass(self.ink)
 
-    def paint(self, lines: Polylines, widths: Floats, splat: bool = False) -> int:
-        """Ink polylines (points), whatever is due. Returns the number of subpixels newly inked."""
-        order = np.arange(len(widths))
-        return _ink.paint(
+    def paint(self, lines: Polylines, widths: Floats, splat: bool = False) -> Ints:
+        """Ink polylines (points), whatever is due. Returns (n,) how many subpixels each newly inks."""
+        order, fresh = np.arange(len(widths)), np.zeros(len(widths), np.int64)
+        _ink.paint(
             self.bits, self.counts, self.residual, self.tone, self.kernel, self.step,
-            np.ascontiguousarray(lines.points * self.scale), lines.first, widths * self.pitch, order, self.gain, splat,
+            np.ascontiguousarray(lines.points * self.scale), lines.first, widths * self.pitch, order, self.gain,
+            splat, fresh,
         )  # fmt: skip
+        return fresh
 
     def place(
         self,
@@ -126,6 +128,7 @@ class Sheet:
         whole: bool = False,
         strict: bool = False,
         cost: float = 0.0,
+        caution: float = 1.0,
         shortest_pt: float = 7.0,
         shortest_wall_pt: float = 2.0,
         most: int = 4,
@@ -135,7 +138,8 @@ class Sheet:
         batches: indices of polylines, in the order in which they are tried.
         walls: (n,) bit 0: the polyline's start is at a wall (an edge, the frame), bit 1: its end.
         shifts: sideways moves to try, in units of spacing_pt (n,).
-        cost: what a run must gain, in cells × tone. Returns the runs (r, 3): polyline, first and last of
+        cost: what a run must gain, in cells × tone. caution: how many times the stroke's own ink counts
+        against it; 1 is where the squared error is least. Returns the runs (r, 3): polyline, first and last of
         its points, and how far each run was moved (r, 2) in points.
 
         Polylines of one batch are tried in blocks; those of every second block each way at the
@@ -155,7 +159,7 @@ class Sheet:
             _ink.place(
                 self.bits, self.counts, self.residual, self.tone, self.kernel, self.step, self.profile,
                 points, lines.first, widths_sub, walls, order, self.gain, moves, spacing,
-                whole, strict, cost, shortest_pt * self.pitch, shortest_wall_pt * self.pitch,
+                whole, strict, caution, cost, shortest_pt * self.pitch, shortest_wall_pt * self.pitch,
                 runs, moved, np.empty((5, longest)), np.empty(longest, np.int64),
             )  # fmt: skip
 
@@ -167,6 +171,31 @@ class Sheet:
         found = np.column_stack([who, runs[who, which]])
         found[:, 1:] -= lines.first[who][:, None]
         return found, moved[who] / self.scale
+
+    def press(
+        self, lines: Polylines, widths: Floats, lightest: Floats, heaviest: Floats, batches: Sequence[Ints]
+    ) -> Floats:
+        """Widths (n,) for polylines that are drawn already with `widths`, such that less is due.
+
+        Each lies between lightest and heaviest (n,), points: the pressure of the hand on the pen. The ink stays as
+        it is; what is due is kept up to date to first order.
+        """
+        points = np.ascontiguousarray(lines.points * self.scale)
+        longest = int(np.diff(lines.first).max()) + 2 if len(widths) else 2
+        pressed = np.ascontiguousarray(widths * self.pitch)
+        low, high = np.ascontiguousarray(lightest * self.pitch), np.ascontiguousarray(heaviest * self.pitch)
+
+        def run(order: Ints) -> None:
+            _ink.press(
+                self.counts, self.residual, self.tone, self.kernel, self.step, self.profile,
+                points, lines.first, pressed, low, high, order, np.empty((3, longest)),
+            )  # fmt: skip
+
+        block = self._blocks(lines)
+        for batch in batches:
+            for group in coloured(batch, block[batch]):
+                self._each(run, group)
+        return pressed / self.pitch
 
     def _blocks(self, lines: Polylines) -> Ints:
         """(n, 2) column and row of the block that each polyline's middle is in."""

@@ -1,14 +1,27 @@
-"""The instances of a texture's tile over a sheet, and the tone at which each of its strokes enters."""
+"""Blasting with a tile of prioritized strokes: its copies over the sheet, tried in order of priority."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
 from penink_cli.blasting import curves
-from penink_cli.blasting.sheet import Sheet
+from penink_cli.blasting.sheet import Cells, Sheet
 from penink_cli.model import Floats, Ints, Strokes, Texture
+
+#: What a run of ink must gain, in cells × tone.
+RUN_COST = 0.3
+#: Rounds of feeding the error back.
+ROUNDS = 4
+#: Sideways moves that are tried, points.
+MOVES = (-0.5, 0.5, 0.0)
+STEP_PT = 1.5
+#: Copies of strokes that are laid out at a time: memory stays bounded on any sheet.
+CHUNK = 100_000
+#: A stroke is not tried where the tone is lighter by this than where it enters.
+SLACK = 0.15
 
 
 def thresholds(texture: Texture, gain_pt: float) -> Floats:
@@ -21,61 +34,161 @@ def thresholds(texture: Texture, gain_pt: float) -> Floats:
     strokes = texture.strokes
     w, h = strokes.width, strokes.height
     sheet = Sheet(np.zeros((1, 1)), w, h, gain_pt)
-    lines = curves.sample(strokes.points, strokes.first, curves.pieces_of(strokes.points, strokes.first, 1.0))
+    lines = curves.sample(strokes.points, strokes.first, curves.pieces_of(strokes.points, strokes.first, STEP_PT))
     lo = np.minimum.reduceat(lines.points, lines.first[:-1])
     hi = np.maximum.reduceat(lines.points, lines.first[:-1])
-    out = np.zeros(len(strokes))
-    area = float(sheet.rows * sheet.columns * 64)
-    inked = 0
-    pad = float(strokes.widths.max()) + gain_pt
-    for i in range(len(strokes)):
-        out[i] = inked / area
-        line = lines.points[lines.first[i] : lines.first[i + 1]]
-        x0, x1 = int(np.floor((lo[i, 0] - pad) / w)), int(np.floor((hi[i, 0] + pad) / w))
-        y0, y1 = int(np.floor((lo[i, 1] - pad) / h)), int(np.floor((hi[i, 1] + pad) / h))
-        copies = [line - (a * w, b * h) for a in range(x0, x1 + 1) for b in range(y0, y1 + 1)]
-        n = len(copies)
-        inked += sheet.paint(
-            curves.Polylines(np.concatenate(copies), np.arange(n + 1) * len(line)), np.full(n, strokes.widths[i])
-        )
-    return out
+    pad = strokes.widths[:, None] + gain_pt
+    first = np.floor((lo - pad) / (w, h)).astype(np.int64)
+    count = np.floor((hi + pad) / (w, h)).astype(np.int64) - first + 1
+    copies = count[:, 0] * count[:, 1]
+    source = np.repeat(np.arange(len(strokes)), copies)
+    k = curves.ramp(copies)
+    shift = -(first[source] + np.column_stack([k % count[source, 0], k // count[source, 0]])) * (w, h)
+    moved = curves.take(lines, source, shift)
+    fresh = np.bincount(source, sheet.paint(moved, strokes.widths[source]), len(strokes))
+    total = np.cumsum(fresh)
+    return (total - fresh) / float(sheet.rows * sheet.columns * 64)
+
+
+def reach(texture: Texture, gain_pt: float) -> float:
+    """The darkest tone that the texture makes, all its strokes drawn."""
+    one_more = Strokes(
+        texture.strokes.width, texture.strokes.height,
+        np.concatenate([texture.strokes.points, np.zeros((1, 2))]),
+        np.append(texture.strokes.first, len(texture.strokes.points) + 1), np.append(texture.strokes.widths, 0.001),
+    )  # fmt: skip
+    return float(thresholds(Texture("", one_more, np.zeros(len(one_more))), gain_pt)[-1])
 
 
 @dataclass(frozen=True, eq=False)
-class Instances:
-    """Every copy of every stroke of a tile that touches the sheet, in order of priority.
+class Copies:
+    """Copies of some of a tile's strokes over a sheet, in order of priority."""
 
-    strokes: the copies; enters: (n,) the tone at which each enters; source: (n,) its stroke in the tile.
-    """
-
-    strokes: Strokes
+    points: Floats
+    first: Ints
+    widths: Floats
     enters: Floats
-    source: Ints
 
 
-def instances(texture: Texture, width_pt: float, height_pt: float, enters: Floats, seed: int) -> Instances:
-    """Lay the tile over the sheet, its origin at a place drawn from the seed.
+def copies(
+    texture: Texture, enters: Floats, sheet: Sheet, seed: int, slack: float, width: float | None
+) -> Iterator[Copies]:
+    """All copies that touch the sheet and could be wanted, some at a time, the tile's origin drawn from the seed.
 
     Copies of one stroke come in an order that does not run along the rows of tiles.
+    slack: copies are left out where the tone is nowhere along them within this of where they enter.
     """
     tile = texture.strokes
-    w, h = tile.width, tile.height
-    n = len(tile)
-    lo = np.minimum.reduceat(tile.points, tile.first[:-1])
-    hi = np.maximum.reduceat(tile.points, tile.first[:-1])
+    size = np.array([tile.width, tile.height])
     rng = np.random.default_rng([seed, 1])
-    origin = rng.uniform(0, 1, 2) * (w, h)
+    origin = rng.random(2) * size
+    pieces = curves.pieces_of(tile.points, tile.first, 4.0)
+    probe = curves.sample(tile.points, tile.first, pieces)
+    lo = np.minimum.reduceat(probe.points, probe.first[:-1])
+    hi = np.maximum.reduceat(probe.points, probe.first[:-1])
     pad = tile.widths[:, None]
-    first = np.ceil((-origin - hi - pad) / (w, h)).astype(np.int64)
-    last = np.floor(((width_pt, height_pt) - origin - lo + pad) / (w, h)).astype(np.int64)
+    first = np.ceil((-origin - hi - pad) / size).astype(np.int64)
+    last = np.floor(((sheet.width, sheet.height) - origin - lo + pad) / size).astype(np.int64)
     across, down = np.maximum(last - first + 1, 0).T
-    copies = across * down
-    source = np.repeat(np.arange(n), copies)
-    k = curves.ramp(copies)
-    shift = np.column_stack([first[source, 0] + k % across[source], first[source, 1] + k // across[source]]) * (w, h)
-    order = np.lexsort((rng.random(len(source)), source))
-    source, shift = source[order], shift[order] + origin
-    sizes = np.diff(tile.first)[source]
-    begin = curves.starts(sizes)
-    points = tile.points[np.repeat(tile.first[source], sizes) + curves.ramp(sizes)] + np.repeat(shift, sizes, axis=0)
-    return Instances(Strokes(width_pt, height_pt, points, begin, tile.widths[source]), enters[source], source)
+    count = across * down
+    total = np.cumsum(count)
+    cells = np.array([sheet.columns / sheet.width, sheet.rows / sheet.height])
+    begin = 0
+    while begin < len(tile):
+        done = total[begin - 1] if begin else 0
+        end = max(begin + 1, int(np.searchsorted(total, done + CHUNK, side="right")))
+        source = np.repeat(np.arange(begin, end), count[begin:end])
+        k = curves.ramp(count[begin:end])
+        shift = np.column_stack([first[source, 0] + k % across[source], first[source, 1] + k // across[source]]) * size
+        order = np.lexsort((rng.random(len(source)), source))
+        source, shift = source[order], shift[order] + origin
+        begin = end
+        if len(source) == 0:
+            continue
+        where = curves.take(probe, source, shift)
+        at = np.floor(where.points * cells).astype(np.int64)
+        inside = (at >= 0).all(axis=1) & (at[:, 0] < sheet.columns) & (at[:, 1] < sheet.rows)
+        at = np.clip(at, 0, [sheet.columns - 1, sheet.rows - 1])
+        tone = np.where(inside, sheet.tone[at[:, 1], at[:, 0]], 0.0)
+        wanted = np.maximum.reduceat(tone, where.first[:-1]) + slack > enters[source]
+        wanted &= np.maximum.reduceat(tone, where.first[:-1]) > 0.0
+        source, shift = source[wanted], shift[wanted]
+        if len(source) == 0:
+            continue
+        part = curves.take(curves.Polylines(tile.points, tile.first), source, shift)
+        widths = tile.widths[source] if width is None else np.full(len(source), width)
+        yield Copies(part.points, part.first, widths, enters[source])
+
+
+def blast_tile(
+    sheet: Sheet, texture: Texture, enters: Floats, seed: int, strict: bool, pen: float | None
+) -> list[Strokes]:
+    """Strokes of the tile, placed by the paper's rule, or in a closed loop that keeps the best of several rounds."""
+    if strict:
+        sheet.owe_strictly()
+        return _place(sheet, texture, enters, seed, True, pen)
+    wanted: Cells = sheet.tone.copy()
+    best: tuple[float, list[Strokes]] | None = None
+    weight = sheet.low_pass(np.ones_like(sheet.tone))
+    for _ in range(ROUNDS):
+        sheet.clear()
+        sheet.owe(wanted)
+        strokes = _place(sheet, texture, enters, seed, False, pen)
+        error = sheet.low_pass(sheet.tone - sheet.ink) / weight
+        size = float(np.mean(np.square(error, dtype=np.float64)))
+        if best is None or size < best[0]:
+            best = size, strokes
+        wanted = wanted + error
+    assert best is not None
+    return best[1]
+
+
+def _place(sheet: Sheet, texture: Texture, enters: Floats, seed: int, strict: bool, pen: float | None) -> list[Strokes]:
+    out = []
+    slack = 2.0 if strict else SLACK
+    for part in copies(texture, enters, sheet, seed, slack, pen):
+        pieces = curves.pieces_of(part.points, part.first, STEP_PT)
+        lines = curves.sample(part.points, part.first, pieces)
+        n = len(part.widths)
+        batches = [b for b in np.array_split(np.arange(n), max(1, n // 4096)) if len(b)]
+        plain = strict or texture.whole
+        runs, moved = sheet.place(
+            lines, part.widths, batches, strict=strict, whole=texture.whole, cost=0.0 if plain else RUN_COST,
+            shifts=(0.0,) if plain else MOVES, spacing_pt=np.ones(n), most=1 if plain else 4,
+        )  # fmt: skip
+        points, first = curves.cut(
+            part.points, part.first, pieces, runs[:, 0], runs[:, 1].astype(np.float64), runs[:, 2].astype(np.float64)
+        )
+        points += np.repeat(moved, np.diff(first), axis=0)
+        out.append(Strokes(sheet.width, sheet.height, points, first, part.widths[runs[:, 0]]))
+    return out
+
+
+def draw_by_threshold(sheet: Sheet, texture: Texture, enters: Floats, seed: int, pen: float | None) -> list[Strokes]:
+    """Each stroke of each tile wherever the tone exceeds the stroke's threshold; whole strokes by their middle."""
+    cells = np.array([sheet.columns / sheet.width, sheet.rows / sheet.height])
+    out = []
+    for part in copies(texture, enters, sheet, seed, 0.0, pen):
+        pieces = curves.pieces_of(part.points, part.first, STEP_PT)
+        lines = curves.sample(part.points, part.first, pieces)
+        n = len(part.widths)
+        owner = np.repeat(np.arange(n), np.diff(lines.first))
+        at = np.floor(lines.points * cells).astype(np.int64)
+        inside = (at >= 0).all(axis=1) & (at[:, 0] < sheet.columns) & (at[:, 1] < sheet.rows)
+        at = np.clip(at, 0, [sheet.columns - 1, sheet.rows - 1])
+        on = inside & (sheet.tone[at[:, 1], at[:, 0]] > part.enters[owner])
+        if texture.whole:
+            middle = (lines.first[:-1] + lines.first[1:] - 1) // 2
+            on = np.repeat(on[middle], np.diff(lines.first))
+        # a run is a stretch of samples of one stroke that are on; one sample alone is no run, save a dot
+        edge = np.flatnonzero(np.diff(np.concatenate([[-1], np.where(on, owner, -1), [-1]])))
+        starts = edge[on[np.minimum(edge, len(on) - 1)] & (edge < len(on))]
+        ends = edge[edge > 0][on[edge[edge > 0] - 1]] - 1
+        keep = (ends > starts) | (np.diff(part.first)[owner[starts]] == 1)
+        who, starts, ends = owner[starts][keep], starts[keep], ends[keep]
+        points, first = curves.cut(
+            part.points, part.first, pieces, who, (starts - lines.first[who]).astype(np.float64),
+            (ends - lines.first[who]).astype(np.float64),
+        )  # fmt: skip
+        out.append(Strokes(sheet.width, sheet.height, points, first, part.widths[who]))
+    return out

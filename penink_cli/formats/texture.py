@@ -13,6 +13,7 @@ See README.md beside this file and schemas/texture.schema.json.
 from __future__ import annotations
 
 import json
+from itertools import chain
 from typing import Any, BinaryIO
 
 import numpy as np
@@ -20,7 +21,7 @@ import numpy as np
 from penink_cli.errors import FormatError
 from penink_cli.formats import strict_json
 from penink_cli.formats.strokes import LIMIT, Sink
-from penink_cli.model import HatchLayer, Strokes, Texture
+from penink_cli.model import Floats, HatchLayer, Ints, Strokes, Texture
 
 MAX_BYTES = 64 << 20
 
@@ -57,25 +58,46 @@ def _texture(document: dict[str, Any]) -> Texture:
     items = strict_json.array(strict_json.member(document, "strokes"), "strokes")
     if not items:
         raise FormatError("strokes is empty; a texture has at least one")
-    priorities, widths, points = np.empty(len(items)), np.empty(len(items)), []
+    priorities, widths, sizes, points = _strokes(items)
+    order = np.argsort(priorities, kind="stable")
+    first = np.zeros(len(items) + 1, np.int64)
+    np.cumsum(sizes[order], out=first[1:])
+    begin = np.cumsum(sizes) - sizes
+    points = points[np.repeat(begin[order] - first[:-1], sizes[order]) + np.arange(len(points))]
+    strokes = Strokes(width, height, points, first, widths[order], texture=name)
+    layers = strict_json.array(document.get("layers", []), "layers")
+    return Texture(name, strokes, priorities[order], whole, tuple(_layer(layer, i) for i, layer in enumerate(layers)))
+
+
+def _strokes(items: list[Any]) -> tuple[Floats, Floats, Ints, Floats]:
+    """Priorities, widths, numbers of points and the points of all strokes.
+
+    Values are looked at all at once; only where something is wrong one by one, to say which. 15 000 strokes of
+    ten points take 90 ms so, and half a second otherwise.
+    """
+    try:
+        priorities = strict_json.numbers([item["priority"] for item in items], "", "")
+        widths = strict_json.numbers([item["width"] for item in items], "", "")
+        controls = [item["points"] for item in items]
+        points = strict_json.pairs(list(chain.from_iterable(controls)), "", "")
+        sizes = np.array([len(control) for control in controls])
+        right = set(map(type, controls)) <= {list} and (sizes % 3 == 1).all() and (np.abs(points) <= LIMIT).all()
+        if right and ((widths >= 0.0001) & (widths <= LIMIT)).all():
+            return priorities, widths, sizes, points
+    except (FormatError, TypeError, KeyError):
+        pass
     for i, item in enumerate(items):
         place = f"stroke {i}"
         if not isinstance(item, dict):
             raise FormatError(f"{place} is {strict_json.quoted(item)}; an object is needed")
-        priorities[i] = strict_json.number(strict_json.member(item, "priority", place), f"{place}: priority")
-        widths[i] = _size(strict_json.member(item, "width", place), f"{place}: width")
+        strict_json.number(strict_json.member(item, "priority", place), f"{place}: priority")
+        _size(strict_json.member(item, "width", place), f"{place}: width")
         control = strict_json.pairs(strict_json.member(item, "points", place), f"{place}: points", f"{place}: point")
         if len(control) % 3 != 1:
             raise FormatError(f"{place}: {len(control)} points; a chain of k cubics has 3k + 1 of them, and a dot one")
         if not (np.abs(control) <= LIMIT).all():
             raise FormatError(f"{place}: a point beyond ±{LIMIT:.0f}")
-        points.append(control)
-    order = np.argsort(priorities, kind="stable")
-    first = np.zeros(len(items) + 1, np.int64)
-    np.cumsum([len(points[i]) for i in order], out=first[1:])
-    strokes = Strokes(width, height, np.concatenate([points[i] for i in order]), first, widths[order], texture=name)
-    layers = strict_json.array(document.get("layers", []), "layers")
-    return Texture(name, strokes, priorities[order], whole, tuple(_layer(layer, i) for i, layer in enumerate(layers)))
+    raise AssertionError("unreachable: one of the strokes is wrong")
 
 
 def _size(value: Any, what: str) -> float:

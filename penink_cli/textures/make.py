@@ -1,65 +1,296 @@
-"""Making stroke textures: tiles of strokes whose every prefix is evenly spaced."""
+"""Making stroke textures: tiles of strokes of which every prefix is evenly spaced.
+
+A tile is filled until it is as good as black, so that it serves every tone. Hatching textures also say
+what they are an instance of (`HatchLayer`), which blasting prefers to their tile.
+"""
 
 from __future__ import annotations
 
 import math
-from typing import Any
+from collections.abc import Callable
 
 import numpy as np
 
-from penink_cli.model import Floats, Strokes, Texture
+from penink_cli.model import Floats, HatchLayer, Strokes, Texture
 from penink_cli.textures.even import Torus, direction
 
 TILE_PT = 144.0
+#: What a full tile covers, at the least.
+FULL = 0.978
+#: Tones at which the layers of hatching end. The next one begins a little before.
+LAYER_ENDS = {1: (0.99,), 2: (0.5, 0.99), 3: (0.42, 0.7, 0.99), 4: (0.42, 0.66, 0.83, 0.99)}
+#: Angles of the layers, from that of the first.
+LAYER_TURNS = (0.0, 90.0, 45.0, 135.0)
+#: A stroke paints a little more than its pen is wide: the device's gain at 600 dpi, roughly.
+GAIN_PT = 0.15
+
+Maker = Callable[[np.random.Generator, int], Floats]
 
 
-def bowed_line(centre: Floats, along: Floats, length: Floats, bow: Floats) -> Floats:
-    """Cubics (n, 4, 2): straight strokes of a length, with their middle pushed sideways by bow."""
+def bowed_line(centre: Floats, angle: Floats, length: Floats, bow: Floats) -> Floats:
+    """Cubics (n, 4, 2): straight strokes about centre (n, 2), their middle pushed sideways by bow."""
+    along = np.array([direction(a) for a in angle.tolist()])
     half = along * length[:, None] / 2
     across = np.column_stack([-along[:, 1], along[:, 0]]) * bow[:, None]
     ends = np.stack([centre - half, centre - half / 3, centre + half / 3, centre + half], axis=1)
-    push = np.stack([-across / 3, across, across, -across / 3], axis=1)
-    return ends + push
+    return ends + np.stack([-across / 3, across, across, -across / 3], axis=1)
+
+
+def fill(
+    torus: Torus, candidates: Maker, pen: float, until: float, reached: float, choices: int, rng: np.random.Generator
+) -> list[Floats]:
+    """Strokes (each (3k + 1, 2)), the emptiest of so many choices each time, from coverage reached to until.
+
+    Coverage is counted on the grid of the torus, a stroke leaving bare of each cell it runs through what is not its
+    share of it: right for strokes that lie as they please, and a little pessimistic for these, which keep apart.
+    """
+    bare = np.full((torus.rows, torus.columns), 1.0 - reached)
+    cell = float(1.0 / (torus.scale[0] * torus.scale[1]))
+    mean = 1.0 - reached
+    out = []
+    while mean > 1.0 - until:
+        strokes = candidates(rng, choices)
+        samples = along_curve(strokes)
+        best = torus.emptiest(samples)
+        length = max(polygon_length(strokes[best]), pen * 0.8)
+        torus.add(samples[best], length)
+        rows, columns = torus.cells(samples[best])
+        keep = math.exp(-length / len(rows) * pen / cell)
+        for r, c in zip(rows.tolist(), columns.tolist(), strict=True):
+            was = bare[r, c]
+            bare[r, c] = was * keep
+            mean -= float(was - was * keep) / bare.size
+        out.append(strokes[best])
+    return out
+
+
+def along_curve(strokes: Floats) -> Floats:
+    """Samples (n, p, 2) of chains (n, 3k + 1, 2), about one a point of length; a dot is its own sample."""
+    k = (strokes.shape[1] - 1) // 3
+    if k == 0:
+        return strokes
+    per = max(2, round(polygon_length(strokes[0]) / k))
+    t = (np.arange(per) / per)[:, None]
+    u = 1 - t
+    parts = []
+    for j in range(k):
+        p = strokes[:, 3 * j : 3 * j + 4, None]
+        parts.append(u**3 * p[:, 0] + 3 * u * u * t * p[:, 1] + 3 * u * t * t * p[:, 2] + t**3 * p[:, 3])
+    return np.concatenate(parts, axis=1)
+
+
+def polygon_length(stroke: Floats) -> float:
+    """Length of a control polygon (p, 2)."""
+    legs = np.diff(stroke, axis=0)
+    return float(np.sqrt((legs * legs).sum(axis=1)).sum())
+
+
+def tile(
+    name: str, strokes: list[Floats], widths: list[float], width: float, height: float, seed: int, whole: bool = False,
+    layers: tuple[HatchLayer, ...] = (),
+) -> Texture:  # fmt: skip
+    """A texture of strokes in order of priority, in hundredths of a point."""
+    first = np.zeros(len(strokes) + 1, np.int64)
+    np.cumsum([len(s) for s in strokes], out=first[1:])
+    points: Floats = np.round(np.concatenate(strokes), 2).astype(np.float64)
+    laid = Strokes(width, height, points, first, np.array(widths), texture=name, seed=seed)
+    return Texture(name, laid, np.arange(len(strokes), dtype=np.float64), whole, layers)
 
 
 def hatching(
-    name: str, layers: list[tuple[float, float]], *, pen_pt: float = 0.4, seed: int = 0, tile_pt: float = TILE_PT
+    name: str,
+    angle: float,
+    count: int,
+    pen: float,
+    spacing: float,
+    seed: int,
+    wave: float = 0.0,
+    wave_length: float = 0.0,
 ) -> Texture:
-    """Hatching with layers of (angle in degrees, tone that the tile has reached when the layer ends)."""
+    """Straight or wavy strokes in one to four directions, one layer after the other."""
     rng = np.random.default_rng(seed)
-    chosen: list[Floats] = []
-    area = tile_pt * tile_pt
-    painted = pen_pt + 0.15
+    ends = LAYER_ENDS[count]
+    layers = []
+    strokes: list[Floats] = []
     reached = 0.0
-    for angle, until in layers:
-        torus = Torus(tile_pt, tile_pt, 0.7)
-        cover = 1 - (1 - until) / (1 - reached)
+    for i, until in enumerate(ends):
+        turned = angle + LAYER_TURNS[i]
+        if spacing > 0:
+            until = min(until, 1 - (1 - reached) * (1 - min(0.97, (pen + GAIN_PT) / spacing)))
+        low = max(0.0, reached - 0.04)
+        if until <= low:
+            break
+        layers.append(HatchLayer(turned, low, until, pen, spacing, wave, wave_length))
+        torus = Torus(TILE_PT, TILE_PT, 0.7)
+
+        def lines(rng: np.random.Generator, n: int, turned: float = turned) -> Floats:
+            turn = turned + rng.uniform(-1.5, 1.5, n)
+            length, bow = rng.uniform(34, 68, n), rng.normal(0, 0.3, n)
+            return bowed_line(rng.uniform(0, TILE_PT, (n, 2)), turn, length, bow)
+
+        strokes += fill(
+            torus, lines, pen + GAIN_PT, until if spacing or i + 1 < count else FULL + 0.012, reached, 40, rng
+        )
         reached = until
-        ink = 0.0
-        # lines that fall at random leave gaps as if each covered what is bare; even ones less so
-        while ink < -math.log(1 - cover) * area * 0.85:
-            c = 48
-            turn = angle + rng.uniform(-1.5, 1.5, c)
-            along = np.array([direction(a) for a in turn])
-            length = rng.uniform(34, 68, c)
-            lines = bowed_line(rng.uniform(0, tile_pt, (c, 2)), along, length, rng.normal(0, 0.35, c))
-            t = np.linspace(0, 1, 17)[None, :, None]
-            samples = lines[:, :1] * (1 - t) + lines[:, 3:] * t
-            best = torus.emptiest(samples)
-            torus.add(samples[best], float(length[best]))
-            chosen.append(lines[best])
-            ink += float(length[best]) * painted
-    n = len(chosen)
-    points: Floats = np.round(np.concatenate(chosen), 3).astype(np.float64)
-    strokes = Strokes(tile_pt, tile_pt, points, np.arange(n + 1) * 4, np.full(n, pen_pt), texture=name, seed=seed)
-    return Texture(name, strokes, np.arange(n, dtype=float))
+    if wave > 0:
+        strokes = [wavy(s, angle, wave, wave_length) for s in strokes]
+    return tile(name, strokes, [pen] * len(strokes), TILE_PT, TILE_PT, seed, layers=tuple(layers))
 
 
-def parallel(angle: float = -45.0, **options: Any) -> Texture:
-    """Lines in one direction."""
-    return hatching("parallel", [(angle, 0.99)], **options)
+def wavy(stroke: Floats, angle: float, wave: float, wave_length: float) -> Floats:
+    """A chain pushed sideways by a wave along its direction, which repeats with the tile."""
+    c, s = direction(angle)
+    across = np.array([-s, c])
+    p = along_curve(stroke[None])[0]
+    p = np.concatenate([p[:: max(1, round(wave_length / 4))], stroke[-1:]])
+    turns = max(1, round(TILE_PT / wave_length))
+    phase = 2 * math.pi * (turns * p @ np.array([1.0, 0.0]) + turns * p @ np.array([0.0, 1.0])) / TILE_PT
+    p = p + np.sin(phase)[:, None] * wave * across
+    slope = np.gradient(p, axis=0) / 3
+    inner = np.stack([p[:-1] + slope[:-1], p[1:] - slope[1:], p[1:]], axis=1).reshape(-1, 2)
+    return np.concatenate([p[:1], inner])
 
 
-def crosshatch(angle: float = -45.0, **options: Any) -> Texture:
-    """Lines in one direction, and across them where it is dark."""
-    return hatching("crosshatch", [(angle, 0.5), (angle + 90, 0.99)], **options)
+def parallel(angle: float, pen: float, spacing: float, layers: int, seed: int) -> Texture:
+    """Lines in one direction, denser as it gets darker."""
+    return hatching("parallel", angle, layers, pen, spacing, seed)
+
+
+def crosshatch(angle: float, pen: float, spacing: float, layers: int, seed: int) -> Texture:
+    """Lines in one direction, and others across them where it is dark."""
+    return hatching("crosshatch" if layers <= 2 else f"crosshatch{layers}", angle, layers, pen, spacing, seed)
+
+
+def grain(angle: float, pen: float, spacing: float, layers: int, seed: int) -> Texture:
+    """Wandering lines side by side, like the grain of wood."""
+    return hatching("grain", angle, layers, pen, spacing, seed, wave=5.0, wave_length=72.0)
+
+
+def stipple(angle: float, pen: float, spacing: float, layers: int, seed: int) -> Texture:
+    """Dots."""
+    size = 72.0
+    torus = Torus(size, size, 0.5, grid=0.75)
+    rng = np.random.default_rng(seed)
+
+    def dots(rng: np.random.Generator, n: int) -> Floats:
+        return rng.uniform(0, size, (n, 1, 2))
+
+    # the area of a dot as the length of line it stands for
+    area = math.pi / 4 * (pen + 1.27 * GAIN_PT) ** 2
+    strokes = fill(torus, dots, area / (pen * 0.8), FULL, 0.0, 60, rng)
+    return tile("stipple", strokes, [pen] * len(strokes), size, size, seed, whole=True)
+
+
+def scribble(angle: float, pen: float, spacing: float, layers: int, seed: int) -> Texture:
+    """Loops that a restless pen makes."""
+    size = 96.0
+    torus = Torus(size, size, 0.7)
+
+    def loops(rng: np.random.Generator, n: int) -> Floats:
+        knots = 9
+        heading = np.cumsum(
+            np.column_stack([rng.uniform(0, 2 * math.pi, n), rng.normal(1.05, 0.55, (n, knots - 1))]), 1
+        )
+        step = rng.uniform(3.0, 6.0, (n, knots))[..., None] * np.stack([np.cos(heading), np.sin(heading)], axis=2)
+        p = np.cumsum(step, axis=1)
+        p = p - p.mean(axis=1, keepdims=True) + rng.uniform(0, size, (n, 1, 2))
+        slope = np.gradient(p, axis=1) / 3
+        inner = np.stack([p[:, :-1] + slope[:, :-1], p[:, 1:] - slope[:, 1:], p[:, 1:]], axis=2).reshape(n, -1, 2)
+        return np.concatenate([p[:, :1], inner], axis=1)
+
+    strokes = fill(torus, loops, pen + GAIN_PT, FULL + 0.01, 0.0, 24, np.random.default_rng(seed))
+    return tile("scribble", strokes, [pen] * len(strokes), size, size, seed)
+
+
+def grass(angle: float, pen: float, spacing: float, layers: int, seed: int) -> Texture:
+    """Blades that grow upwards and bend."""
+    size = 96.0
+    torus = Torus(size, size, 0.7)
+
+    def blades(rng: np.random.Generator, n: int) -> Floats:
+        lean = np.radians(-90.0 + angle + rng.normal(0, 16, n))
+        bend = rng.normal(0, 0.5, n)
+        length = rng.uniform(10, 26, n)
+        foot = rng.uniform(0, size, (n, 2))
+        out = np.empty((n, 4, 2))
+        for j, (reach, turn) in enumerate(((0.0, 0.0), (0.34, 0.1), (0.7, 0.45), (1.0, 1.0))):
+            a = lean + bend * turn
+            out[:, j] = foot + (reach * length)[:, None] * np.column_stack([np.cos(a), np.sin(a)])
+        return out
+
+    strokes = fill(torus, blades, pen + GAIN_PT, FULL + 0.01, 0.0, 32, np.random.default_rng(seed))
+    return tile("grass", strokes, [pen] * len(strokes), size, size, seed)
+
+
+def brick(angle: float, pen: float, spacing: float, layers: int, seed: int) -> Texture:
+    """A wall: the joints first, then bricks hatched one by one, then everything."""
+    rng = np.random.default_rng(seed)
+    course, stretcher = 12.0, 36.0
+    rows, columns = 8, 3
+    width, height = columns * stretcher, rows * course
+    gap = 1.3
+    joints: list[Floats] = []
+    spans = []
+    for r in range(rows):
+        for c in range(columns):
+            x, y = c * stretcher + (stretcher / 2 if r % 2 else 0.0), r * course
+            box = np.array([x + gap, y + gap, x + stretcher - gap, y + course - gap]) + rng.normal(0, 0.25, 4)
+            spans.append(box)
+            # the shaded sides, below and at the right, then the lit ones
+            for a, b in (((0, 3), (2, 3)), ((2, 1), (2, 3)), ((0, 1), (2, 1)), ((0, 1), (0, 3))):
+                p, q = box[list(a)], box[list(b)]
+                t = np.array([0.02, 0.34, 0.66, 0.98])[:, None]
+                line = p * (1 - t) + q * t
+                line[1:3] += rng.normal(0, 0.25, 2)
+                joints.append(line)
+    sides = [joints[k::4] for k in range(4)]
+    order = [group[i] for group in sides for i in rng.permutation(len(group))]
+    torus = Torus(width, height, 0.7)
+    for line in order:
+        torus.add(along_curve(line[None])[0], polygon_length(line))
+    boxes = np.array(spans)
+
+    def hatch(rng: np.random.Generator, n: int) -> Floats:
+        box = boxes[rng.integers(0, len(boxes), n)]
+        top = box[:, 1] + rng.uniform(0.3, 2.0, n)
+        bottom = box[:, 3] - rng.uniform(0.3, 2.0, n)
+        x = box[:, 0] + 1.0 + rng.random(n) * (box[:, 2] - box[:, 0] - 7.0)
+        start, end = np.column_stack([x + 5.0, top]), np.column_stack([x, bottom])
+        t = np.array([0.0, 1 / 3, 2 / 3, 1.0])[None, :, None]
+        line = start[:, None] * (1 - t) + end[:, None] * t
+        line[:, 1:3, 0] += rng.normal(0, 0.3, (n, 1))
+        return line
+
+    def course_lines(rng: np.random.Generator, n: int) -> Floats:
+        centre = rng.uniform(0, 1, (n, 2)) * (width, height)
+        return bowed_line(centre, angle + rng.normal(0, 1.2, n), rng.uniform(14, 30, n), rng.normal(0, 0.2, n))
+
+    strokes = order + fill(torus, hatch, pen + GAIN_PT, 0.62, 0.16, 24, rng)
+    strokes += fill(Torus(width, height, 0.7), course_lines, pen + GAIN_PT, FULL + 0.012, 0.6, 32, rng)
+    return tile("brick", strokes, [pen] * len(strokes), width, height, seed, whole=True)
+
+
+#: Kind -> (maker, its usual angle, pen and number of layers).
+KINDS: dict[str, tuple[Callable[[float, float, float, int, int], Texture], float, float, int]] = {
+    "parallel": (parallel, -45.0, 0.4, 1),
+    "crosshatch": (crosshatch, -45.0, 0.4, 2),
+    "crosshatch4": (crosshatch, -45.0, 0.4, 4),
+    "stipple": (stipple, 0.0, 1.0, 1),
+    "scribble": (scribble, 0.0, 0.4, 1),
+    "grain": (grain, -8.0, 0.4, 1),
+    "brick": (brick, 0.0, 0.4, 1),
+    "grass": (grass, 0.0, 0.4, 1),
+}
+
+
+def make(
+    kind: str, *, angle: float | None = None, pen: float | None = None, spacing: float = 0.0, layers: int | None = None,
+    seed: int = 0,
+) -> Texture:  # fmt: skip
+    """A texture of a kind, by default as it is shipped.
+
+    angle: of the first layer, degrees, clockwise from the right. pen: stroke width, points. spacing: hatching lines of one
+    layer are nowhere closer, points; 0 for no limit. layers: 1 … 4 directions of hatching.
+    """
+    maker, usual_angle, usual_pen, usual_layers = KINDS[kind]
+    return maker(usual_angle if angle is None else angle, pen or usual_pen, spacing, layers or usual_layers, seed)

@@ -1,0 +1,122 @@
+"""Candidate strokes of hatching: those that the sweep lays, and a lattice of those that may fill what it leaves."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from penink_cli.blasting import curves, sweep, walls
+from penink_cli.blasting.sheet import SIGMA_PT, Sheet
+from penink_cli.model import Floats, HatchLayer, Ints, Strokes
+from penink_cli.textures.even import direction
+
+#: Strokes are sampled at about this distance.
+STEP_PT = 1.5
+#: Strokes that end for no reason of their own may be this much longer to reach a wall.
+SLACK_PT = 4.0
+#: Candidates of a layer are tried in so many batches.
+BATCHES = 4
+
+
+@dataclass(frozen=True, eq=False)
+class Candidates:
+    """Curves cut at the walls, sampled, and in which order to try them.
+
+    points, first: the curves. pieces: see `curves.sample`. bounded: see `walls.Pieces`.
+    """
+
+    points: Floats
+    first: Ints
+    pieces: Ints
+    lines: curves.Polylines
+    widths: Floats
+    bounded: npt.NDArray[np.uint8]
+    batches: list[Ints]
+
+    def drawn(self, runs: Ints, moved: Floats) -> Strokes:
+        """The runs of candidates that were drawn, as strokes (of a sheet of no size)."""
+        start, end = runs[:, 1].astype(np.float64), runs[:, 2].astype(np.float64)
+        points, first = curves.cut(self.points, self.first, self.pieces, runs[:, 0], start, end)
+        points += np.repeat(moved, np.diff(first), axis=0)
+        return Strokes(0.0, 0.0, points, first, self.widths[runs[:, 0]])
+
+
+def between_walls(
+    cubics: Floats,
+    slack: npt.NDArray[np.bool_],
+    pen: float,
+    painted: float,
+    borders: walls.Walls,
+    sheet: Sheet,
+    rank: Floats,
+) -> Candidates:
+    """Candidates from cubics (n, 4, 2), cut where they cross walls.
+
+    slack: (n, 2) whether the cubic may be made longer at its start and its end to reach a wall.
+    rank: (n,) those of lower rank are tried first.
+    """
+    n = len(cubics)
+    chord = cubics[:, 3] - cubics[:, 0]
+    more = SLACK_PT / np.maximum(np.sqrt((chord * chord).sum(axis=1)), 1.0)
+    longer = curves.blossom(cubics, np.where(slack[:, 0], -more, 0.0), np.where(slack[:, 1], 1.0 + more, 1.0))
+    points, first = np.ascontiguousarray(longer.reshape(-1, 2)), np.arange(n + 1) * 4
+    pieces = curves.pieces_of(points, first, STEP_PT)
+    lines = curves.sample(points, first, pieces)
+    extra = [np.where(slack[:, k], more / (1 + more * slack.sum(axis=1)) * pieces, 0.0) for k in (0, 1)]
+    parts = walls.cut(borders, lines, np.full(n, painted), (extra[0], extra[1]), sheet.width, sheet.height)
+    points, first = curves.cut(points, first, pieces, parts.curve, parts.start, parts.end)
+    order = np.argsort(rank[parts.curve], kind="stable")
+    pieces = curves.pieces_of(points, first, STEP_PT)
+    return Candidates(
+        points, first, pieces, curves.sample(points, first, pieces), np.full(len(first) - 1, pen), parts.bounded,
+        [part for part in np.array_split(order, BATCHES) if len(part)],
+    )  # fmt: skip
+
+
+def swept(
+    sheet: Sheet, coverage: Floats, layer: HatchLayer, pen: float, gain_pt: float, borders: walls.Walls, seed: int
+) -> Candidates:
+    """The strokes of one layer that cover each cell as coverage asks, in no order."""
+    hatch = sweep.hatch(sheet, coverage, layer, pen, gain_pt, seed)
+    rank = np.random.default_rng([seed, 3]).random(len(hatch.curves))
+    painted = sweep.painted_width(layer.angle, pen, gain_pt)
+    return between_walls(hatch.curves, ~hatch.joined, pen, painted, borders, sheet, rank)
+
+
+def lattice(
+    sheet: Sheet, layer: HatchLayer, pen: float, gain_pt: float, length: float, apart: float, least: float,
+    borders: walls.Walls, seed: int,
+) -> Candidates:  # fmt: skip
+    """Strokes in a layer's direction all over the sheet, those where most is due first.
+
+    least: they must pass a place where so many times as much is due as the stroke itself adds.
+    """
+    rng = np.random.default_rng([seed, 4])
+    c, s = direction(layer.angle)
+    along, across = np.array([c, s]), np.array([-s, c])
+    corners = np.array([[0, 0], [sheet.width, 0], [0, sheet.height], [sheet.width, sheet.height]], float)
+    u_range, v_range = corners @ along, corners @ across
+    rows, places = np.arange(v_range.min(), v_range.max(), apart), np.arange(u_range.min(), u_range.max(), length / 2)
+    u = (places[None, :] + rng.uniform(-0.5, 0.5, (len(rows), 1)) * length / 2).ravel()
+    u = u + rng.uniform(-0.2, 0.2, len(u)) * length
+    v = np.repeat(rows, len(places)) + rng.uniform(-0.5, 0.5, len(u)) * apart
+    middle = np.column_stack([u * c - v * s, u * s + v * c])
+    half = length * rng.uniform(0.35, 0.65, len(u))
+    cells = np.array([sheet.columns / sheet.width, sheet.rows / sheet.height])
+    due = np.zeros(len(u))
+    for t in (-0.6, -0.3, 0.0, 0.3, 0.6):
+        at = np.floor((middle + (t * half)[:, None] * along) * cells).astype(np.int64)
+        inside = (at >= 0).all(axis=1) & (at[:, 0] < sheet.columns) & (at[:, 1] < sheet.rows)
+        at = np.clip(at, 0, [sheet.columns - 1, sheet.rows - 1])
+        active = inside & (sheet.tone[at[:, 1], at[:, 0]] > layer.low)
+        due = np.maximum(due, np.where(active, sheet.residual[at[:, 1], at[:, 0]], 0.0))
+    painted = sweep.painted_width(layer.angle, pen, gain_pt)
+    keep = due > least * painted / (2.5066 * SIGMA_PT)
+    middle, half, due = middle[keep], half[keep], due[keep]
+    turn, bow = rng.normal(0, 0.012, len(half)), rng.normal(0, 0.12, len(half))
+    uu = half[:, None] * np.array([-1.0, -1 / 3, 1 / 3, 1.0])
+    vv = turn[:, None] * uu + bow[:, None] * np.array([-0.5, 0.85, 0.85, -0.5])
+    cubics = middle[:, None, :] + uu[..., None] * along + vv[..., None] * across
+    return between_walls(cubics, np.zeros((len(half), 2), bool), pen, painted, borders, sheet, -due)

@@ -1,0 +1,132 @@
+"""The sweep: one layer of hatching, laid line by line as densely as a tone asks.
+
+A tile of strokes repeats, and the strokes chosen from it lie as unevenly as chance has it. Here
+nothing is chosen. Along the hatch runs u, across it v; the tone that the layer owes, divided by
+the width that the pen paints, is a number of lines per point, and its integral over v is a phase.
+A line is due wherever the phase has grown by one. A front moves over the sheet: it takes
+the place where a line is due first, lets it run on both ways for as long as the neighbours are due
+too, and cuts it into strokes of a hand's length, whose ends keep clear of the ends on the lines
+before. Then every stroke is moved to the middle between its neighbours, a few times over, and at
+last the hand's own variation is added.
+
+This module alone imports the compiled kernel `_sweep`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from penink_cli.blasting import _sweep
+from penink_cli.blasting.sheet import Sheet
+from penink_cli.model import Floats, HatchLayer, Ints
+from penink_cli.textures.even import direction
+
+COLUMN_PT = 2.0  # along the hatch
+ROW_PT = 1.0  # across it
+#: How far the hatch is laid beyond the frame: at the border lines are as dense as elsewhere.
+PAD_PT = 24.0
+SHORTEST_PT = 7.0
+STROKE_PT = (34.0, 72.0)
+#: No stroke is turned from its layer's direction by more (the tangent of two degrees).
+STEEPEST = 0.035
+#: How much of a line's deviation from where it was due the next line keeps. Less than all, so that the
+#: density stays true; but the less, the longer a mismatch of neighbouring columns lives on as a seam.
+MEMORY = 0.9
+#: How far, in spacings, chance moves the next line: without it a flat field is a ruled lattice.
+DRIFT = 0.12
+ROUNDS = 8
+#: The hand's variation: of a stroke's place in parts of the spacing, of its bow in points.
+WAVER = 0.07
+BOW_PT = 0.3
+
+
+@dataclass(frozen=True, eq=False)
+class Hatch:
+    """Strokes of one layer: straight lines with a bow, over the frame and a little beyond it.
+
+    curves: (n, 4, 2) control points, points. joined: (n, 2) whether another stroke goes on from its start, its end.
+    spacing: (n,) distance to the neighbouring lines that the density asks for, points.
+    """
+
+    curves: Floats
+    joined: npt.NDArray[np.bool_]
+    spacing: Floats
+
+
+def painted_width(layer_angle: float, pen_pt: float, gain_pt: float) -> float:
+    """The width that a device paints for a stroke in this direction."""
+    c, s = direction(layer_angle)
+    return pen_pt + gain_pt * (abs(c) + abs(s))
+
+
+def hatch(sheet: Sheet, coverage: Floats, layer: HatchLayer, pen_pt: float, gain_pt: float, seed: int) -> Hatch:
+    """Strokes of `layer` that cover each cell of the sheet to coverage (rows, columns), 0 … 1."""
+    c, s = direction(layer.angle)
+    along, across = np.array([c, s]), np.array([-s, c])
+    corners = np.array([[0, 0], [sheet.width, 0], [0, sheet.height], [sheet.width, sheet.height]], float)
+    u_range, v_range = corners @ along, corners @ across
+    u0, v0 = u_range.min() - PAD_PT, v_range.min() - PAD_PT
+    columns = int((u_range.max() + PAD_PT - u0) / COLUMN_PT) + 1
+    rows = int((v_range.max() + PAD_PT - v0) / ROW_PT) + 2
+    width = painted_width(layer.angle, pen_pt, gain_pt)
+    phase = np.zeros((columns, rows))
+    u = u0 + (np.arange(columns) + 0.5) * COLUMN_PT
+    v = v0 + (np.arange(rows - 1) + 0.5) * ROW_PT
+    cells = np.array([sheet.columns / sheet.width, sheet.rows / sheet.height])
+    column = np.clip(((u[:, None] * c - v[None, :] * s) * cells[0]).astype(np.int64), 0, sheet.columns - 1)
+    row = np.clip(((u[:, None] * s + v[None, :] * c) * cells[1]).astype(np.int64), 0, sheet.rows - 1)
+    x, y = u[:, None] * c - v[None, :] * s, u[:, None] * s + v[None, :] * c
+    near = np.abs(x - sheet.width / 2) < sheet.width / 2 + PAD_PT
+    near &= np.abs(y - sheet.height / 2) < sheet.height / 2 + PAD_PT
+    density = np.where(near, coverage[row, column] / width, 0.0)
+    if layer.spacing_pt > 0:
+        density = np.minimum(density, 1.0 / layer.spacing_pt)
+    np.cumsum(density * ROW_PT, axis=1, out=phase[:, 1:])
+
+    rng = np.random.default_rng([seed, 2])
+    key = int(rng.integers(1 << 62))
+    total = float(phase[:, -1].sum())
+    room = int(total / (SHORTEST_PT / COLUMN_PT)) + columns + 16
+    leaves = 1 << max(1, (columns - 1).bit_length())
+    strokes, spans = np.empty((room, 3)), np.empty((room, 5), np.int64)
+    n = _sweep.lay(
+        phase, np.full(columns, float(rng.random())), np.zeros(columns, np.int64), np.empty(2 * leaves),
+        np.full(columns, -1e9), np.zeros(columns, np.uint8), key,
+        round(SHORTEST_PT / COLUMN_PT), round(STROKE_PT[0] / COLUMN_PT), round(STROKE_PT[1] / COLUMN_PT),
+        STEEPEST * COLUMN_PT / ROW_PT, MEMORY, DRIFT, strokes, spans,
+    )  # fmt: skip
+    strokes, spans = strokes[:n], spans[:n]
+    length = int((spans[:, 1] - spans[:, 0] + 1).sum())
+    begin, lists, place = np.empty(columns + 1, np.int64), np.empty(length, np.int64), np.empty(length, np.int64)
+    _sweep.crossings(strokes, spans, n, begin, lists, place)
+    _sweep.relax(phase, strokes, spans, n, begin, lists, place, ROUNDS, STEEPEST * COLUMN_PT / ROW_PT)
+
+    # from columns and rows to points, the hand's variation, and a small gap where one stroke follows another
+    at_column, at_row = np.floor(strokes[:, 0]).astype(np.int64), np.floor(strokes[:, 1]).astype(np.int64)
+    rate = np.diff(phase, axis=1)[at_column, np.clip(at_row, 0, rows - 2)] / ROW_PT
+    spacing = np.minimum(1.0 / np.maximum(rate, 1e-3), 40.0)
+    joined = spans[:, 2:4] == 1
+    lift = 0.4 * width
+    half = (spans[:, 1] - spans[:, 0] + 1) * (COLUMN_PT / 2)
+    start, end = -half + np.where(joined[:, 0], lift, 0.0), half - np.where(joined[:, 1], lift, 0.0)
+    # a joint is not where a column ends but anywhere near, the same for both strokes
+    middle_u = u0 + (strokes[:, 0] + 0.5) * COLUMN_PT
+    middle_v = v0 + strokes[:, 1] * ROW_PT
+    slope = strokes[:, 2] * ROW_PT / COLUMN_PT
+    middle_v += rng.normal(0, WAVER, n) * np.minimum(spacing, 8.0)
+    slope += rng.normal(0, WAVER, n) * np.minimum(spacing, 8.0) / np.maximum(half, 8.0) * 0.7
+    bow = rng.normal(0, 1, n) * np.minimum(BOW_PT, 0.14 * spacing) * np.minimum(half / 20.0, 1.0)
+    t = np.array([0.0, 1 / 3, 2 / 3, 1.0])
+    uu = start[:, None] + (end - start)[:, None] * t
+    vv = middle_v[:, None] + slope[:, None] * uu + bow[:, None] * np.array([-0.5, 0.85, 0.85, -0.5])
+    uu = uu + middle_u[:, None]
+    curves = uu[..., None] * along + vv[..., None] * across
+    return Hatch(curves, joined, spacing)
+
+
+def number(hatches: list[Hatch]) -> Ints:
+    """(m + 1,) where each hatch's strokes begin when all are laid end to end."""
+    return np.concatenate([[0], np.cumsum([len(h.curves) for h in hatches])])

@@ -1,0 +1,152 @@
+"""Where strokes must end: strong discontinuity edges, and the frame.
+
+This module alone imports the compiled kernel `_walls`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from penink_cli.blasting import _walls, curves
+from penink_cli.blasting.sheet import Sheet
+from penink_cli.model import EdgeList, Floats, Ints
+
+CELL_PT = 6.0
+#: Steps of tone at which an edge is a wall, and at which it is one if it goes on from a wall. Cutting strokes at
+#: every weak edge leaves stubble between edges that run side by side.
+STRONG, WEAK = 0.22, 0.12
+#: The tone of an edge's side is looked up so far from it, points.
+BESIDE_PT = 1.4
+#: Pieces between walls that are shorter are not drawn.
+SHORTEST_PT = 1.5
+
+
+@dataclass(frozen=True, eq=False)
+class Walls:
+    """Segments (m, 4), points, and a grid over them: the walls near cell c are items[begin[c] : begin[c + 1]]."""
+
+    segments: Floats
+    begin: Ints
+    items: Ints
+    columns: int
+    rows: int
+
+
+def strong_edges(edges: EdgeList, sheet: Sheet) -> Floats:
+    """The edges (m, 4), points, over which the sheet's tone steps strongly, and those that go on from them."""
+    vertices = edges.scaled(sheet.width, sheet.height)
+    a, b = vertices[edges.edges[:, 0]], vertices[edges.edges[:, 1]]
+    along = b - a
+    length = np.sqrt((along * along).sum(axis=1))
+    normal = np.column_stack([-along[:, 1], along[:, 0]]) / np.maximum(length, 1e-9)[:, None]
+    cells = np.array([sheet.columns / sheet.width, sheet.rows / sheet.height])
+
+    def tone(points: Floats) -> Floats:
+        at = np.clip(np.floor(points * cells).astype(np.int64), 0, [sheet.columns - 1, sheet.rows - 1])
+        return sheet.tone[at[:, 1], at[:, 0]].astype(np.float64)
+
+    step = np.zeros(len(a))
+    for t in (0.25, 0.5, 0.75):
+        p = a + t * along
+        step += np.abs(tone(p + normal * BESIDE_PT) - tone(p - normal * BESIDE_PT)) / 3
+    strong = step >= STRONG
+    for _ in range(4):
+        touched = np.zeros(len(vertices), bool)
+        touched[edges.edges[strong].ravel()] = True
+        strong |= (step >= WEAK) & touched[edges.edges].any(axis=1)
+    return np.concatenate([a[strong], b[strong]], axis=1)
+
+
+def build(edges: EdgeList | None, sheet: Sheet) -> Walls:
+    """The frame and the strong edges of the picture on the sheet."""
+    w, h = sheet.width, sheet.height
+    segments: Floats = np.array([[0, 0, w, 0], [w, 0, w, h], [w, h, 0, h], [0, h, 0, 0]], float)
+    if edges is not None and len(edges.edges):
+        segments = np.concatenate([segments, strong_edges(edges, sheet)])
+    # no piece is longer than a cell, so that the bounding boxes touch few cells
+    along = segments[:, 2:] - segments[:, :2]
+    n = np.maximum(1, np.ceil(np.abs(along).max(axis=1) / CELL_PT)).astype(np.int64)
+    which, k = np.repeat(np.arange(len(n)), n), curves.ramp(n)
+    start = segments[which, :2] + along[which] * (k / n[which])[:, None]
+    end = segments[which, :2] + along[which] * ((k + 1) / n[which])[:, None]
+    segments = np.ascontiguousarray(np.concatenate([start, end], axis=1))
+    columns, rows = int(w / CELL_PT) + 1, int(h / CELL_PT) + 1
+    lo = np.clip(np.floor(np.minimum(start, end) / CELL_PT).astype(np.int64), 0, [columns - 1, rows - 1])
+    hi = np.clip(np.floor(np.maximum(start, end) / CELL_PT).astype(np.int64), 0, [columns - 1, rows - 1])
+    wide, high = (hi - lo + 1).T
+    which, k = np.repeat(np.arange(len(wide)), wide * high), curves.ramp(wide * high)
+    cell = (lo[which, 1] + k // wide[which]) * columns + lo[which, 0] + k % wide[which]
+    order = np.argsort(cell, kind="stable")
+    begin = np.searchsorted(cell[order], np.arange(columns * rows + 1))
+    return Walls(segments, begin.astype(np.int64), np.ascontiguousarray(which[order]), columns, rows)
+
+
+@dataclass(frozen=True, eq=False)
+class Pieces:
+    """Parts of curves between walls: of which curve, from where to where (in samples), and which ends are at walls.
+
+    bounded: (n,) bit 0: the start is at a wall, bit 1: the end is.
+    """
+
+    curve: Ints
+    start: Floats
+    end: Floats
+    bounded: npt.NDArray[np.uint8]
+
+
+def cut(
+    walls: Walls, lines: curves.Polylines, painted: Floats, slack: tuple[Floats, Floats], width: float, height: float
+) -> Pieces:
+    """Cut polylines where they cross walls, less half of what they paint, and leave out what is outside the frame.
+
+    painted: (n,) the width that each paints, points. slack: (n,) each, how many samples at the start and at the end
+    of each are there only to reach a wall: they are dropped where they do not.
+    """
+    n = len(lines.first) - 1
+    count = np.diff(lines.first)
+    room = max(1024, 2 * n)
+    points = np.ascontiguousarray(lines.points)
+    while True:
+        who, where, sine = np.empty(room, np.int64), np.empty(room), np.empty(room)
+        found = _walls.crossings(
+            points, lines.first, walls.segments, walls.begin, walls.items, walls.columns, walls.rows,
+            0.0, 0.0, CELL_PT, who, where, sine,
+        )  # fmt: skip
+        if found <= room:
+            break
+        room = found
+    order = np.lexsort((where[:found], who[:found]))
+    who, where, sine = who[:found][order], where[:found][order], sine[:found][order]
+    # the same crossing may have been found in two cells, or in two walls that meet there
+    again = np.zeros(found, bool)
+    again[1:] = (who[1:] == who[:-1]) & (where[1:] - where[:-1] < 1e-6)
+    who, where, sine = who[~again], where[~again], sine[~again]
+    # interleave: each curve's start, its crossings, its end
+    per = np.bincount(who, minlength=n)
+    step = np.sqrt(
+        (np.diff(points[np.column_stack([lines.first[:-1], lines.first[1:] - 1])], axis=1)[:, 0] ** 2).sum(1)
+    )
+    step = np.maximum(step / np.maximum(count - 1, 1), 1e-6)
+    margin = np.minimum(0.5 * painted[who] / np.maximum(sine, 0.2), 2 * painted[who]) / step[who]
+    begin = curves.starts(per + 2)
+    stop, gap, wall = np.zeros(begin[-1]), np.zeros(begin[-1]), np.ones(begin[-1], np.uint8)
+    at = begin[who] + 1 + curves.ramp(per)
+    stop[at], gap[at] = where, margin
+    for ends, value in ((begin[:-1], 0.0), (begin[1:] - 1, count - 1.0)):
+        stop[ends], wall[ends] = value, 0
+    curve = np.repeat(np.arange(n), per + 1)
+    left = begin[curve] + curves.ramp(per + 1)
+    start, end = stop[left] + gap[left], stop[left + 1] - gap[left + 1]
+    # slack that reaches no wall goes; so does what lies wholly in it
+    start = np.where(wall[left] == 0, start + slack[0][curve], start)
+    end = np.where(wall[left + 1] == 0, end - slack[1][curve], end)
+    keep = (end - start) * step[curve] > SHORTEST_PT
+    middle = np.clip(0.5 * (start + end), 0, count[curve] - 1)
+    lo = np.minimum(middle.astype(np.int64), count[curve] - 1)
+    p = points[lines.first[curve] + lo]
+    keep &= (p[:, 0] >= 0) & (p[:, 0] <= width) & (p[:, 1] >= 0) & (p[:, 1] <= height)
+    bounded = wall[left] | (wall[left + 1] << 1)
+    return Pieces(curve[keep], start[keep], end[keep], bounded[keep].astype(np.uint8))
