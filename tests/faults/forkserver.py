@@ -127,7 +127,7 @@ def _serve(connection: socket.socket) -> None:
     import pkgutil
 
     import penink_cli.commands
-    import penink_cli.main  # noqa: F401  # so that no run pays for it
+    import penink_cli.main
 
     for module in pkgutil.walk_packages(penink_cli.__path__, "penink_cli."):
         if not module.name.endswith("__main__"):

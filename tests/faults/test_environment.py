@@ -30,7 +30,7 @@ def run(
 def test_one_strange_environment_for_every_subcommand(name, server, inputs):
     """All at once, since whatever differs would show: then the parts, below, for one subcommand."""
     strange = environment(
-        LC_ALL="C", LANG="tr_TR.UTF-8", TZ="Asia/Kathmandu", PYTHONHASHSEED="77", PYTHONUTF8="0", COLUMNS="20", LINES="3",
+        LC_ALL="C", LANG="tr_TR.UTF-8", TZ="Asia/Kathmandu", PYTHONHASHSEED="77", PYTHONUTF8="0", COLUMNS="20",
         OMP_NUM_THREADS="3", OPENBLAS_NUM_THREADS="2", PYTHONINTMAXSTRDIGITS="640",
     )  # fmt: skip
     for gone in ("HOME", "TMPDIR", "USER", "LOGNAME", "TERM"):
