@@ -36,6 +36,7 @@ CALLS = {
     "to-ps": Call("photo.strokes.jsonl"),
     "to-svg": Call("photo.strokes.jsonl"),
     "to-pdf": Call("photo.strokes.jsonl"),
+    "pack": Call("photo.illustration.json"),
 }
 
 
@@ -82,6 +83,9 @@ def make_inputs(folder: Path) -> None:
         (1, [[5, 50], [9, 40], [60, 40], [70, 5]]),
     )
     (folder / "photo.strokes.jsonl").write_bytes(drawn)
+    layer = {"samples": "samples.pgm", "edges": "photo.edges.json", "texture": "crosshatch", "outline": {}}
+    manifest = {"format": "penink-illustration", "version": 1, "width": 21.6, "height": 16.2, "layers": [layer]}
+    (folder / "photo.illustration.json").write_text(json.dumps(manifest))
 
 
 def arguments(name: str, folder: Path, by_name: bool = True, inputs: Path | None = None) -> list[str]:
