@@ -23,7 +23,7 @@ PREVIEW_DPI ?= 150
 # NAME.STAGE.options holds the options a stage was last run with; it gets a new date only when they
 # change, so depending on it is depending on the options.
 penink-options = $(or $($(1).$(notdir $*)),$($(1)))
-penink-note = @printf '%s\n' '$(call penink-options,$(1))' | cmp -s - $@ || printf '%s\n' '$(call penink-options,$(1))' > $@
+penink-note = @mkdir -p $(@D); printf '%s\n' '$(call penink-options,$(1))' | cmp -s - $@ || printf '%s\n' '$(call penink-options,$(1))' > $@
 
 PENINK_FORCE:
 %.detect.options: PENINK_FORCE
