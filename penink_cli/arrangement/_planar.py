@@ -11,9 +11,9 @@ import cython
 COMPILED = cython.compiled
 
 if cython.compiled:
-    from cython.cimports.libc.math import floor
+    from cython.cimports.libc.math import floor, sqrt
 else:
-    from math import floor
+    from math import floor, sqrt
 
 
 @cython.cfunc
@@ -329,32 +329,113 @@ def shorten(
         depth += 2
 
 
-def move(
+@cython.cfunc
+@cython.exceptval(check=False)
+def _move(
     planar: Planar,
     vertex: cython.int,
-    before: cython.int,
-    after: cython.int,
+    around: cython.int[::1],
+    first: cython.int,
+    last: cython.int,
     x: cython.longlong,
     y: cython.longlong,
 ) -> cython.bint:
-    """Move a vertex of two live segments, `before` and `after`, to (x, y) if both still fit there."""
+    """Move a vertex to (x, y) if all its segments, around[first : last], still fit there."""
     old_x: cython.longlong = planar.vertices[vertex, 0]
     old_y: cython.longlong = planar.vertices[vertex, 1]
-    other_before: cython.int = planar.ends[before, 0] + planar.ends[before, 1] - vertex
-    other_after: cython.int = planar.ends[after, 0] + planar.ends[after, 1] - vertex
-    planar.remove(before)
-    planar.remove(after)
+    k: cython.int
+    added: cython.int
+    s: cython.int
+    for k in range(first, last):
+        planar.remove(around[k])
     planar.vertices[vertex, 0] = x
     planar.vertices[vertex, 1] = y
-    fitting: cython.bint = planar.fits(other_before, vertex)
-    if fitting:
-        planar.add(before)
-        fitting = planar.fits(vertex, other_after)
-        if not fitting:
-            planar.remove(before)
-    if not fitting:
+    for added in range(first, last):
+        s = around[added]
+        if planar.fits(planar.ends[s, 0], planar.ends[s, 1]):
+            planar.add(s)
+            continue
+        for k in range(first, added):
+            planar.remove(around[k])
         planar.vertices[vertex, 0] = old_x
         planar.vertices[vertex, 1] = old_y
-        planar.add(before)
-    planar.add(after)
-    return fitting
+        for k in range(first, last):
+            planar.add(around[k])
+        return False
+    return True
+
+
+def settle(
+    planar: Planar,
+    movable: cython.int[::1],
+    around_first: cython.int[::1],
+    around: cython.int[::1],
+    run_first: cython.int[::1],
+    run_last: cython.int[::1],
+    places: cython.double[:, ::1],
+    furthest: cython.double,
+    sweeps: cython.int,
+) -> None:
+    """Move vertices to where the segments around them fit the points they stand for best.
+
+    Each in turn goes to its own least-squares optimum with its neighbours held (Gauss-Seidel),
+    at most `furthest` from where it started, and only where its segments still fit.
+
+    movable: vertices; those segments are around[around_first[v] : around_first[v + 1]]; segment s
+    stands for the points places[run_first[s] : run_last[s] + 1], in units.
+    """
+    sweep: cython.int
+    m: cython.Py_ssize_t
+    k: cython.int
+    r: cython.int
+    v: cython.int
+    s: cython.int
+    other: cython.int
+    vx: cython.double
+    vy: cython.double
+    qx: cython.double
+    qy: cython.double
+    dx: cython.double
+    dy: cython.double
+    t: cython.double
+    length: cython.double
+    weight: cython.double
+    sum_x: cython.double
+    sum_y: cython.double
+    x: cython.longlong
+    y: cython.longlong
+    start: cython.longlong[:, ::1] = planar.vertices.copy()
+    for sweep in range(sweeps):
+        for m in range(movable.shape[0]):
+            v = movable[m]
+            vx = planar.vertices[v, 0]
+            vy = planar.vertices[v, 1]
+            weight = 0.05  # holds what no point pulls
+            sum_x = weight * vx
+            sum_y = weight * vy
+            for k in range(around_first[v], around_first[v + 1]):
+                s = around[k]
+                other = planar.ends[s, 0] + planar.ends[s, 1] - v
+                qx = planar.vertices[other, 0]
+                qy = planar.vertices[other, 1]
+                dx = qx - vx
+                dy = qy - vy
+                length = dx * dx + dy * dy
+                for r in range(run_first[s], run_last[s] + 1):
+                    t = ((places[r, 0] - vx) * dx + (places[r, 1] - vy) * dy) / length
+                    if t < 0 or t > 1:
+                        continue
+                    weight += (1 - t) * (1 - t)
+                    sum_x += (1 - t) * (places[r, 0] - t * qx)
+                    sum_y += (1 - t) * (places[r, 1] - t * qy)
+            vx = sum_x / weight - start[v, 0]
+            vy = sum_y / weight - start[v, 1]
+            length = vx * vx + vy * vy
+            if length > furthest * furthest:
+                t = furthest / sqrt(length)
+                vx *= t
+                vy *= t
+            x = start[v, 0] + cython.cast(cython.longlong, floor(vx + 0.5))
+            y = start[v, 1] + cython.cast(cython.longlong, floor(vy + 0.5))
+            if x != planar.vertices[v, 0] or y != planar.vertices[v, 1]:
+                _move(planar, v, around, around_first[v], around_first[v + 1], x, y)

@@ -248,6 +248,7 @@ def follow(
 
 def reach(
     ends: cython.int[::1],
+    start: cython.double[:, ::1],
     direction: cython.double[:, ::1],
     position: cython.double[:, ::1],
     pixel: cython.int[:, ::1],
@@ -258,11 +259,12 @@ def reach(
     target: cython.int[::1],
     cost: cython.double[::1],
 ) -> None:
-    """For each end of a chain, the point ahead of it that it most likely meets.
+    """For each end of a chain, the point that the chain would meet if it went on straight.
 
-    ends: (n,) points; direction: (n, 2) unit vectors out of the chain. index: (h, w) point of each
-    pixel or -1. chain, place: the chain of each point (-1: none) and its place along it; an end
-    does not meet its own neighbourhood. target: (n,) filled, -1 for none; cost: (n,) filled, pixels.
+    ends: (n,) points; start: (n, 2) where the straight line leaves the chain, direction: (n, 2)
+    unit vectors out of it. index: (h, w) point of each pixel or -1. chain, place: the chain of each
+    point (-1: none) and its place along it; an end does not meet its own neighbourhood.
+    target: (n,) filled, -1 for none within radius of the start; cost: (n,) filled, pixels.
     """
     height: cython.int = index.shape[0]
     width: cython.int = index.shape[1]
@@ -276,7 +278,8 @@ def reach(
     dx: cython.double
     dy: cython.double
     distance: cython.double
-    cosine: cython.double
+    ahead: cython.double
+    aside: cython.double
     price: cython.double
     with cython.nogil:
         for k in range(n):
@@ -290,15 +293,14 @@ def reach(
                         continue
                     if chain[other] == chain[e] and abs(place[other] - place[e]) < 4 * window:
                         continue
-                    dx = position[other, 0] - position[e, 0]
-                    dy = position[other, 1] - position[e, 1]
+                    dx = position[other, 0] - start[k, 0]
+                    dy = position[other, 1] - start[k, 1]
                     distance = sqrt(dx * dx + dy * dy)
-                    if distance > radius:
+                    ahead = dx * direction[k, 0] + dy * direction[k, 1]
+                    aside = fabs(dx * direction[k, 1] - dy * direction[k, 0])
+                    if distance > radius or (ahead < 0 and distance > 1.5) or aside > 1.5 + 0.3 * ahead:
                         continue
-                    cosine = (dx * direction[k, 0] + dy * direction[k, 1]) / distance if distance > 0 else 1.0
-                    if cosine < 0.2 and distance > 1.5:
-                        continue
-                    price = distance * (2 - cosine)
+                    price = fabs(ahead) + 2 * aside
                     if price < cost[k]:
                         cost[k] = price
                         target[k] = other

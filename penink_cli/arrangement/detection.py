@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import numpy.typing as npt
 
 from penink_cli.arrangement import _planar
-from penink_cli.arrangement.chains import Chains, chain_lengths, join_ends, link_chains
+from penink_cli.arrangement.chains import Chains, Joints, chain_lengths, join_ends, link_chains, unbend
 from penink_cli.arrangement.gradient import EdgePoints, edge_points, noise_level
 from penink_cli.arrangement.planar import from_units, planar, to_units
 from penink_cli.arrangement.simplification import simplify
-from penink_cli.model import EdgeList, Floats
+from penink_cli.model import EdgeList
 
-SIGMA = 1.0
 TOLERANCE = 0.3
 MIN_LENGTH = 6.0
 _CAMERA_BLUR = 0.8  # pixels: pixel area, lens and the central difference, where nothing better is known
@@ -39,18 +40,28 @@ def detect_edges(
 
     """
     height, width = grey.shape
-    sigma = SIGMA if sigma is None else sigma
+    noise = noise_level(grey)
+    if sigma is None:
+        sigma = float(np.clip(0.4 + 0.15 * 255 * noise, 0.6, 1.4))
     steepness = 1 / (np.sqrt(2 * np.pi) * np.hypot(sigma, _CAMERA_BLUR))  # of an edge of step 1, grey per pixel
     if high is None:
-        noise = noise_level(grey) / (5.013 * sigma * sigma)  # of each component of the gradient
-        high = max(0.06, 6 * noise / steepness)
+        unrest = noise / (5.013 * sigma * sigma)  # the noise of each component of the gradient
+        high = max(0.06, 6 * unrest / steepness)
     low = min(0.5 * high if low is None else low, high)
     points = edge_points(grey, sigma, low * steepness)
     chains = _telling(points, link_chains(points), high * steepness, min_length)
     if not len(chains):
         return EdgeList(width, height, strength=np.zeros(0))
-    joins, places, reaching = join_ends(points, chains, radius=3.0 + sigma)
-    return _arrange(points, chains, joins, places, reaching, tolerance, steepness)
+    blur = _blur(points, chains, sigma)
+    points = replace(points, position=unbend(points, chains, blur))
+    return _arrange(points, chains, join_ends(points, chains, blur), tolerance, steepness)
+
+
+def _blur(points: EdgePoints, chains: Chains, sigma: float) -> float:
+    """Whole blur (pixels) that edges are seen through: the photo's, its pixels' and the detector's."""
+    widths = points.width[chains.order]
+    widths = widths[widths > 0]
+    return float(np.clip(np.median(widths), sigma, 3 * sigma)) if len(widths) else float(np.hypot(sigma, _CAMERA_BLUR))
 
 
 def _telling(points: EdgePoints, chains: Chains, high: float, min_length: float) -> Chains:
@@ -60,27 +71,19 @@ def _telling(points: EdgePoints, chains: Chains, high: float, min_length: float)
     return chains.where((steepest >= high) & (chain_lengths(chains, points.position) >= min_length))
 
 
-def _arrange(
-    points: EdgePoints,
-    chains: Chains,
-    joins: npt.NDArray[np.int32],
-    places: Floats,
-    reaching: npt.NDArray[np.int32],
-    tolerance: float,
-    steepness: float,
-) -> EdgeList:
+def _arrange(points: EdgePoints, chains: Chains, joints: Joints, tolerance: float, steepness: float) -> EdgeList:
     height, width = points.shape
-    n = len(points.position)
+    places = joints.places
     positions = np.concatenate([np.clip(points.position, 0, (width, height)), places])
-    order = chains.order
+    order, first = chains.order, chains.first
     links = np.column_stack([order[:-1], order[1:]])
-    links = np.delete(links, chains.first[1:-1] - 1, axis=0)
-    rings = np.column_stack([order[chains.first[1:] - 1], order[chains.first[:-1]]])[chains.ring]
-    frame = np.column_stack([reaching, n + np.arange(len(places))])
-    ends = np.concatenate([links, rings, joins, frame]).astype(np.int32)
+    kept = ~(joints.trimmed[:-1] | joints.trimmed[1:])
+    kept[first[1:-1] - 1] = False
+    rings = np.column_stack([order[first[1:] - 1], order[first[:-1]]])[chains.ring]
+    ends = np.concatenate([links[kept], rings, joints.links]).astype(np.int32)
     arrangement = planar(width, height, to_units(positions), ends)
     _planar.insert(arrangement, ends)
-    simplify(arrangement, tolerance)
+    simplify(arrangement, tolerance, width, height)
     live = np.asarray(arrangement.live)[: len(ends)].astype(bool)
     edges = np.asarray(arrangement.ends)[live].astype(np.int64)
     step = np.concatenate([points.magnitude / steepness, np.zeros(len(places))])

@@ -9,7 +9,9 @@ import numpy.typing as npt
 
 from penink_cli.arrangement import _planar, _points
 from penink_cli.arrangement._planar import Planar
-from penink_cli.arrangement.planar import UNIT
+from penink_cli.arrangement.planar import UNIT, to_units
+
+_SWEEPS = 6
 
 Ints32 = npt.NDArray[np.int32]
 
@@ -44,15 +46,33 @@ def paths(ends: Ints32, live: npt.NDArray[np.bool_], vertex_count: int) -> tuple
     return path[: offset[count]], segment[: offset[count]], offset[: count + 1]
 
 
-def simplify(planar: Planar, tolerance: float) -> None:
+def simplify(planar: Planar, tolerance: float, width: int, height: int) -> None:
     """Replace the arrangement's paths by segments within tolerance (pixels) of them.
 
-    Nodes stay where they are. A shortcut that would touch another edge is not taken: the path
-    is then divided further, at worst down to its own segments.
+    Nodes stay where they are while paths are divided. A shortcut that would touch another edge is
+    not taken: the path is then divided further, at worst down to its own segments. In the end all
+    vertices but open ends and those on the frame settle between the points that the segments stand for:
+    on a curve, segments through points of it would all lie on its inner side.
     """
     vertices, ends = np.asarray(planar.vertices), np.asarray(planar.ends)
     path, segment, offset = paths(ends, np.asarray(planar.live)[: len(ends)].astype(bool), len(vertices))
+    places = vertices[path].astype(float)
     kept = np.zeros(len(path), np.uint8)
     stack = np.zeros((len(path) + 2, 2), np.int32)
     for first, last in pairwise(offset.tolist()):
         _planar.shorten(planar, path[first:last], segment[first : last - 1], tolerance / UNIT, stack, kept[first:last])
+
+    run_first, run_last = np.zeros(len(ends), np.int32), np.full(len(ends), -1, np.int32)
+    stops = np.flatnonzero(kept)
+    follows = segment[stops] >= 0
+    run_first[segment[stops[follows]]] = stops[follows]
+    run_last[segment[stops[follows]]] = stops[np.flatnonzero(follows) + 1]
+    live = np.flatnonzero(np.asarray(planar.live)[: len(ends)])
+    tail = np.concatenate([ends[live, 0], ends[live, 1]])
+    around = np.concatenate([live, live])[np.argsort(tail, kind="stable")].astype(np.int32)
+    degree = np.bincount(tail, minlength=len(vertices))
+    around_first = np.concatenate([[0], np.cumsum(degree)]).astype(np.int32)
+    limit = to_units(np.array([[width, height]], float))
+    inner = ((vertices > 0) & (vertices < limit)).all(axis=1)
+    movable = np.flatnonzero((degree > 1) & inner).astype(np.int32)
+    _planar.settle(planar, movable, around_first, around, run_first, run_last, places, tolerance / UNIT, _SWEEPS)

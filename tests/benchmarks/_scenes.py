@@ -1,0 +1,138 @@
+"""Rendered scenes with known curves: what edge detection and extraction are measured against."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from scipy.ndimage import gaussian_filter
+
+LEVEL = 1 / 255
+FINE = 8  # points a pixel, along each axis, of the truth that a pixel averages
+STEP = 0.05  # pixels between the points of a true curve
+
+
+@dataclass
+class Shape:
+    """A disc or a polygon, painted with a plane of grey over what lies below."""
+
+    points: np.ndarray  # (n, 2) closed outline, dense
+    corners: np.ndarray  # (c, 2)
+    inside: object  # (x, y) -> bool
+    grey: tuple[float, float, float]  # value at the origin, slope in x, slope in y
+
+    def value(self, x, y):
+        return self.grey[0] + self.grey[1] * x + self.grey[2] * y
+
+
+@dataclass
+class Scene:
+    """Shapes painted one over the other on a background."""
+
+    size: int
+    shapes: list[Shape] = field(default_factory=list)
+
+    def truth(self, x, y):
+        """Grey at places (any shape), seen without lens, pixel or noise."""
+        value = np.full(np.shape(x), 0.5)
+        for shape in self.shapes:
+            value = np.where(shape.inside(x, y), shape.value(x, y), value)
+        return value
+
+    def sharp(self, fine=FINE):
+        """Mean of the truth over each pixel (size, size)."""
+        at = (np.arange(self.size * fine) + 0.5) / fine
+        value = self.truth(at[None, :], at[:, None])
+        return value.reshape(self.size, fine, self.size, fine).mean(axis=(1, 3))
+
+    def photo(self, blur, noise, seed=0):
+        """What a camera makes of it: a lens of that blur (pixels), noise of that many levels, 8 bits."""
+        at = (np.arange(self.size * FINE) + 0.5) / FINE
+        fine = gaussian_filter(self.truth(at[None, :], at[:, None]), blur * FINE, mode="nearest", truncate=4)
+        grey = fine.reshape(self.size, FINE, self.size, FINE).mean(axis=(1, 3))
+        grey = grey + np.random.default_rng(seed).normal(0, 1, grey.shape) * noise * LEVEL
+        return np.round(np.clip(grey, 0, 1) * 255) / 255
+
+    def curves(self):
+        """Points (n, 2) of the visible outlines, `STEP` apart, and the grey step (n,) at each."""
+        kept, contrast = [], []
+        for k, shape in enumerate(self.shapes):
+            p = shape.points
+            seen = ((p > 0) & (p < self.size)).all(axis=1)
+            for later in self.shapes[k + 1 :]:
+                seen &= ~later.inside(p[:, 0], p[:, 1])
+            tangent = np.roll(p, -1, axis=0) - np.roll(p, 1, axis=0)
+            normal = np.column_stack([-tangent[:, 1], tangent[:, 0]]) / np.hypot(*tangent.T)[:, None]
+            left, right = p + 0.05 * normal, p - 0.05 * normal
+            step = np.abs(self.truth(*left.T) - self.truth(*right.T))
+            kept.append(p[seen])
+            contrast.append(step[seen])
+        return np.concatenate(kept), np.concatenate(contrast)
+
+    def junctions(self):
+        """Corners (c, 2), and places (t, 2) where an outline vanishes under another shape."""
+        corners, tees = [], []
+        for k, shape in enumerate(self.shapes):
+            p = shape.points
+            hidden = np.zeros(len(p), bool)
+            hidden_corner = np.zeros(len(shape.corners), bool)
+            for later in self.shapes[k + 1 :]:
+                hidden |= later.inside(*p.T)
+                hidden_corner |= later.inside(*shape.corners.T) if len(shape.corners) else False
+            corners.extend(shape.corners[~hidden_corner])
+            tees.extend(p[hidden != np.roll(hidden, -1)])
+        clip = lambda q: np.array([c for c in q if (np.array(c) > 4).all() and (np.array(c) < self.size - 4).all()])  # noqa: E731
+        return clip(corners).reshape(-1, 2), clip(tees).reshape(-1, 2)
+
+
+def disc(x, y, radius, grey):
+    n = max(16, int(2 * np.pi * radius / STEP))
+    t = np.arange(n) * 2 * np.pi / n
+    points = np.column_stack([x + radius * np.cos(t), y + radius * np.sin(t)])
+    return Shape(points, np.zeros((0, 2)), lambda a, b: (a - x) ** 2 + (b - y) ** 2 < radius * radius, grey)
+
+
+def polygon(corners, grey):
+    """A convex polygon, corners in order."""
+    corners = np.asarray(corners, float)
+    following = np.roll(corners, -1, axis=0)
+    points = np.concatenate(
+        [a + np.linspace(0, 1, max(2, int(np.hypot(*(b - a)) / STEP)), endpoint=False)[:, None] * (b - a)
+         for a, b in zip(corners, following)]
+    )  # fmt: skip
+    turn = np.sign(np.cross(corners[1] - corners[0], corners[2] - corners[1]))
+
+    def inside(x, y):
+        result = True
+        for a, b in zip(corners, following):
+            result = result & (turn * ((b[0] - a[0]) * (y - a[1]) - (b[1] - a[1]) * (x - a[0])) > 0)
+        return result
+
+    return Shape(points, corners, inside, grey)
+
+
+def random_scene(seed, size=160, least=25 * LEVEL):
+    """Some discs and polygons on one another, each step between neighbours at least `least`."""
+    random = np.random.default_rng(seed)
+    levels = np.arange(0.08, 0.93, least * 1.25)
+    scene = Scene(size, [])
+
+    def grey():
+        slope = random.uniform(-1, 1, 2) * 0.1 * least / size * 2
+        value = levels[random.integers(len(levels))]
+        return value, slope[0], slope[1]
+
+    while len(scene.shapes) < 7:
+        x, y = random.uniform(0.1, 0.9, 2) * size
+        if random.random() < 0.5:
+            scene.shapes.append(disc(x, y, random.uniform(8, 0.3 * size), grey()))
+        else:
+            n = random.integers(3, 6)
+            angle = np.sort(random.uniform(0, 2 * np.pi, n))
+            gaps = np.diff(np.append(angle, angle[0] + 2 * np.pi))
+            if gaps.min() < 0.7 or gaps.max() > 2.8:
+                continue
+            radius = random.uniform(12, 0.35 * size)
+            corners = np.column_stack([x + radius * np.cos(angle), y + radius * np.sin(angle)])
+            scene.shapes.append(polygon(corners, grey()))
+    return scene
