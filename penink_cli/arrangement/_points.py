@@ -6,9 +6,11 @@ import cython
 COMPILED = cython.compiled
 
 if cython.compiled:
-    from cython.cimports.libc.math import fabs, log, sqrt
+    from cython.cimports.libc.math import fabs, log, sqrt, sqrtf
 else:
     from math import fabs, log, sqrt
+
+    sqrtf = sqrt
 
 
 @cython.cfunc
@@ -25,6 +27,45 @@ def _along_x(smooth: cython.float[:, ::1], i: cython.int, j: cython.int) -> cyth
 @cython.exceptval(check=False)
 def _along_y(smooth: cython.float[:, ::1], i: cython.int, j: cython.int) -> cython.double:
     return 0.5 * (smooth[i + 1, j] - smooth[i - 1, j])
+
+
+def steepness(smooth: cython.float[:, ::1], out: cython.float[:, ::1]) -> None:
+    """Length (h, w) of the gradient, grey per pixel; 0 on the border."""
+    i: cython.Py_ssize_t
+    j: cython.Py_ssize_t
+    dx: cython.float
+    dy: cython.float
+    with cython.nogil:
+        for i in range(1, smooth.shape[0] - 1):
+            for j in range(1, smooth.shape[1] - 1):
+                dx = smooth[i, j + 1] - smooth[i, j - 1]
+                dy = smooth[i + 1, j] - smooth[i - 1, j]
+                out[i, j] = 0.5 * sqrtf(dx * dx + dy * dy)
+
+
+def surround(
+    steep: cython.float[:, ::1], pixel: cython.int[:, ::1], values: cython.double[:, ::1], reach: cython.int
+) -> None:
+    """Mean steepness around each point, what is steeper than the point counted as equal.
+
+    Every other row and column of the window is looked at. values: as of `locate`, column 5 is filled.
+    """
+    k: cython.Py_ssize_t
+    i: cython.Py_ssize_t
+    j: cython.Py_ssize_t
+    count: cython.int
+    own: cython.float
+    total: cython.float
+    with cython.nogil:
+        for k in range(pixel.shape[0]):
+            own = sqrtf(values[k, 2] * values[k, 2] + values[k, 3] * values[k, 3])
+            total = 0
+            count = 0
+            for i in range(max(0, pixel[k, 0] - reach), min(steep.shape[0], pixel[k, 0] + reach + 1), 2):
+                for j in range(max(0, pixel[k, 1] - reach), min(steep.shape[1], pixel[k, 1] + reach + 1), 2):
+                    total += min(own, steep[i, j])
+                    count += 1
+            values[k, 5] = total / count
 
 
 def locate(smooth: cython.float[:, ::1], pixel: cython.int[:, ::1], out: cython.double[:, ::1]) -> None:

@@ -16,6 +16,7 @@ from penink_cli.model import EdgeList
 
 TOLERANCE = 0.3
 MIN_LENGTH = 6.0
+TELLING = 10.0  # grass and fur reach 6 to 9, outlines 13 and more
 _CAMERA_BLUR = 0.8  # pixels: pixel area, lens and the central difference, where nothing better is known
 
 
@@ -46,7 +47,7 @@ def detect_edges(
     steepness = 1 / (np.sqrt(2 * np.pi) * np.hypot(sigma, _CAMERA_BLUR))  # of an edge of step 1, grey per pixel
     if high is None:
         unrest = noise / (5.013 * sigma * sigma)  # the noise of each component of the gradient
-        high = max(0.06, 6 * unrest / steepness)
+        high = max(0.05, 5 * unrest / steepness)
     low = min(0.5 * high if low is None else low, high)
     points = edge_points(grey, sigma, low * steepness)
     chains = _telling(points, link_chains(points), high * steepness, min_length)
@@ -65,10 +66,26 @@ def _blur(points: EdgePoints, chains: Chains, sigma: float) -> float:
 
 
 def _telling(points: EdgePoints, chains: Chains, high: float, min_length: float) -> Chains:
+    """The chains that tell something: steep enough somewhere, long enough, and no texture.
+
+    In texture (grass, fur, noise) every ridge of the gradient has others as steep around it, and
+    the ridges are short or meander. So a chain's steepness is taken in relation to the mean
+    steepness around it, and it counts the more the farther the chain goes.
+    """
     if not len(chains):
         return chains
-    steepest = np.maximum.reduceat(points.magnitude[chains.order], chains.first[:-1])
-    return chains.where((steepest >= high) & (chain_lengths(chains, points.position) >= min_length))
+    order, first, count = chains.order, chains.first[:-1], np.diff(chains.first)
+    steepness = points.magnitude[order]
+    contrast = np.add.reduceat(steepness, first) / np.maximum(np.add.reduceat(points.surround[order], first), 1e-12)
+    position = points.position[order]
+    extent = np.hypot(*(np.maximum.reduceat(position, first) - np.minimum.reduceat(position, first)).T)
+    telling = contrast * np.sqrt(extent) >= TELLING
+    return chains.where(
+        telling
+        & (np.maximum.reduceat(steepness, first) >= high)
+        & (chain_lengths(chains, points.position) >= min_length)
+        & (count >= 3)
+    )
 
 
 def _arrange(points: EdgePoints, chains: Chains, joints: Joints, tolerance: float, steepness: float) -> EdgeList:
