@@ -384,7 +384,6 @@ def settle(
     movable: vertices; those segments are around[around_first[v] : around_first[v + 1]]; segment s
     stands for the points places[run_first[s] : run_last[s] + 1], in units.
     """
-    sweep: cython.int
     m: cython.Py_ssize_t
     k: cython.int
     r: cython.int
@@ -405,7 +404,7 @@ def settle(
     x: cython.longlong
     y: cython.longlong
     start: cython.longlong[:, ::1] = planar.vertices.copy()
-    for sweep in range(sweeps):
+    for _ in range(sweeps):
         for m in range(movable.shape[0]):
             v = movable[m]
             vx = planar.vertices[v, 0]

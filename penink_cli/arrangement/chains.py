@@ -158,7 +158,7 @@ def join_ends(points: EdgePoints, chains: Chains, blur: float) -> Joints:
     end_of = np.full(count, -1, np.int32)
     end_of[order[at]] = np.arange(len(at))
     near_end = np.full(count, -1, np.int32)
-    for back in range(int(round(2 * blur)) + 1, -1, -1):
+    for back in range(round(2 * blur) + 1, -1, -1):
         reachable = back < length
         near_end[order[(at + inward * back)[reachable]]] = np.flatnonzero(reachable)
     partner = np.where(meets, near_end[target], -1)

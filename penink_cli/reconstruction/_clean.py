@@ -453,11 +453,12 @@ def resample(
     steps: cython.int,
     spread: cython.double,
     stiffness: cython.double,
+    near: cython.float[:, ::1],
     seen: cython.int[::1],
     queue: cython.int[:, ::1],
-    out: cython.float[:, ::1],
+    out: cython.double[:, ::1],
 ) -> None:
-    """Fill rows of new samples, each from the pixels that its place reaches.
+    """Fill new samples of some rows, those with a finite `near`, each from the pixels that its place reaches.
 
     first: (rows, columns + 1 as one flat run) offsets of `items` by cell.
     """
@@ -484,6 +485,8 @@ def resample(
     with cython.nogil:
         for i in range(first_row, last_row):
             for j in range(out.shape[1]):
+                if near[i, j] > 1e9:
+                    continue
                 x = (j + 0.5) * width / out.shape[1]
                 y = (i + 0.5) * height / out.shape[0]
                 stamp += 1

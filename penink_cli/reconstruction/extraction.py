@@ -16,8 +16,8 @@ import numpy.typing as npt
 
 from penink_cli.model import EdgeList, Floats
 from penink_cli.reconstruction import _clean
+from penink_cli.reconstruction.camera import camera_blur
 
-MARGIN = 1.6  # pixels
 _SPREAD = 1.5
 _STIFFNESS = 0.3
 _WINDOW = 49
@@ -49,7 +49,7 @@ def extract_samples(
     height, width = values.shape
     if not len(edges.edges):
         return values
-    margin = MARGIN if margin is None else margin
+    margin = contamination(camera_blur(values, edges)) if margin is None else margin
     lines = segments(edges, width, height)
     walls = np.zeros((height, width), np.uint8)
     _clean.block(*lines, walls)
@@ -64,6 +64,15 @@ def extract_samples(
 
     in_bands(rows, height)
     return np.clip(out, 0, 1, out=out)
+
+
+def contamination(blur: float) -> float:
+    """How far from an edge a photo's pixels are mixtures: half a pixel's diagonal, and the blur as far as it tells.
+
+    Farther out less than a tenth of the step is left, and clean pixels run short: at 2.5 pixels instead
+    of 1.3 the samples of a camera's sharp photo lose 2 dB.
+    """
+    return 0.7 + 1.3 * blur
 
 
 def in_bands(work: Callable[[tuple[int, int]], None], height: int, rows: int = 64) -> None:

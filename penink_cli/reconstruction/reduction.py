@@ -5,40 +5,88 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from penink_cli.errors import ParameterError
 from penink_cli.model import EdgeList, Floats
 from penink_cli.reconstruction import _clean
+from penink_cli.reconstruction.camera import camera_blur
 from penink_cli.reconstruction.extraction import in_bands, segments
+from penink_cli.reconstruction.fit import AREA, POINT, fit_plain, fit_samples
 
 Ints32 = npt.NDArray[np.int32]
 
+FITS = ("none", "lsq")
+
+_NEAR = 2.5  # samples: farther from an edge the plain reconstruction does not notice it
 _CELL = 4.0
 _WINDOW = 49
 
 
-def reduce(samples: npt.NDArray[np.floating], edges: EdgeList, width: int, height: int) -> npt.NDArray[np.float32]:
-    """Reduce samples (h, w), 0 … 1, to a grid of width × height over the same frame.
+def reduce(
+    samples: npt.NDArray[np.floating],
+    edges: EdgeList,
+    width: int,
+    height: int,
+    *,
+    photo: npt.NDArray[np.floating] | None = None,
+    fit: str = "none",
+    blur: float | None = None,
+    threads: int | None = None,
+) -> npt.NDArray[np.float32]:
+    """Reduce samples to a grid of width × height over the same frame.
 
-    Each new sample is the value, at its place, of a plane fitted to the old samples that it can
-    reach without crossing an edge.
+    Away from edges the new samples are those of the plain cubic reconstruction that comes nearest
+    to the old ones. Near edges each is the value, at its place, of a plane fitted to the old samples
+    that it can reach without crossing an edge; with fit "lsq" these are then fitted to the photo.
+
+    Args:
+        samples: (h, w) clean samples, 0 … 1.
+        edges: in the frame of the image.
+        width, height: the new grid, no larger than the old.
+        photo: (any h, any w) what "lsq" fits to; the samples themselves where None.
+        fit: "none" or "lsq".
+        blur: standard deviation of the photo's blur in its pixels; measured where None.
+        threads: the bytes are the same for any number.
+
+    Returns:
+        (height, width) float32, 0 … 1.
+
     """
+    if fit not in FITS:
+        raise ParameterError(f"fit {fit!r} is not one of {', '.join(FITS)}")
     values = np.ascontiguousarray(samples, np.float32)
+    if photo is None:
+        seen, blur, fine = values, 0.0, POINT  # clean samples are sharp
+    else:
+        seen, fine = np.ascontiguousarray(photo, np.float32), AREA
+        blur = camera_blur(seen, edges) if blur is None else blur
+    start = fit_plain(seen, width, height, blur, fine)
+    if len(edges.edges):
+        _take_near_edges(values, edges, start)
+        if fit == "lsq":
+            start = fit_samples(seen, edges, start, blur, fine, threads=threads)
+    return np.clip(start, 0, 1).astype(np.float32)
+
+
+def _take_near_edges(values: npt.NDArray[np.float32], edges: EdgeList, out: Floats) -> None:
+    """Replace the samples that an edge is near by planes fitted to what each can reach."""
+    height, width = out.shape
     old_height, old_width = values.shape
+    near = np.full(out.shape, np.inf, np.float32)
+    _clean.near(*segments(edges, width, height), _NEAR, near)
     lines = segments(edges, old_width, old_height)
     walls = np.zeros(values.shape, np.uint8)
     _clean.block(*lines, walls)
     first, items = _buckets(lines, old_width, old_height)
-    out = np.empty((height, width), np.float32)
     factor = max(old_width / width, old_height / height)
 
     def rows(band: tuple[int, int]) -> None:
         seen, queue = np.zeros(_WINDOW**2, np.int32), np.zeros((_WINDOW**2 + 9, 2), np.int32)
         _clean.resample(
-            values, walls, *lines, _CELL, first, items, *band, min(23, round(factor)), 0.4 * factor,
-            (0.3 * factor) ** 2, seen, queue, out,
+            values, walls, *lines, _CELL, first, items, *band, min(23, round(factor)), 0.4 * min(23, factor),
+            (0.3 * min(23, factor)) ** 2, near, seen, queue, out,
         )  # fmt: skip
 
     in_bands(rows, height, 16)
-    return np.clip(out, 0, 1, out=out)
 
 
 def _buckets(lines: tuple[Floats, Floats, Floats, Floats], width: int, height: int) -> tuple[Ints32, Ints32]:

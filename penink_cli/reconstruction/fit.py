@@ -1,0 +1,202 @@
+"""Samples whose reconstruction, seen through the camera, is the photo (the paper's section 3, carried further).
+
+A photo is the mean of the light over each pixel's area after the lens has blurred it. With R the
+reconstruction (linear in the samples while the edges stay), B the area and the blur, and s₀ the
+samples taken with care, the samples minimise
+
+    ‖B R s − photo‖² + λ ‖s − s₀‖².
+
+Without B the fit would make samples that are wrong and only look good beside a blurred photo.
+Away from edges R is separable, and so is the fit: two banded systems solved once (`fit_plain`).
+Where edges are near, blocks of samples are solved by conjugate gradients, each with a halo that
+is thrown away: a sample's say fades within three of its neighbours.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import partial
+
+import numpy as np
+import numpy.typing as npt
+
+from penink_cli.model import EdgeList, Floats
+from penink_cli.reconstruction import _fit, _tile
+from penink_cli.reconstruction import threads as threading
+from penink_cli.reconstruction.lattice import Axis, axis
+from penink_cli.reconstruction.paths import Paths, spill
+
+Grey32 = npt.NDArray[np.float32]
+
+AREA = 2  # points along each axis that stand for a pixel's area
+POINT = 1  # and for a sample, which is the value at a place
+HOLD = 0.2  # λ: between 0.05 and 1 the result hardly changes; it holds samples that no pixel tells of
+_STEPS = 6  # of conjugate gradients: four reach the end within 0.02 dB
+_HALO = 4
+_NEAR = 3.0  # samples: an edge farther away changes no pixel that these samples are fitted to
+_SPAN = 5
+_PLAIN_HOLD = 1e-3
+
+
+def blur_kernel(blur: float) -> Floats:
+    """Half of a sampled Gaussian of that standard deviation (pixels), its centre first, summing to one when whole."""
+    if blur < 0.05:
+        return np.ones(1)
+    reach = max(1, math.ceil(3.5 * blur))
+    weights = [math.exp(-0.5 * (d / blur) ** 2) for d in range(reach + 1)]
+    whole = weights[0] + 2 * sum(weights[1:])
+    return np.array([w / whole for w in weights])
+
+
+def fit_plain(photo: Grey32, width: int, height: int, blur: float, fine: int = AREA) -> Floats:
+    """The samples (height, width) of plain cubic convolution that fit a photo (h, w) best."""
+    kernel = blur_kernel(blur)
+    down = _along(photo, height, kernel, fine)
+    return np.ascontiguousarray(_along(np.ascontiguousarray(down.T, np.float32), width, kernel, fine).T)
+
+
+def _along(photo: Grey32, count: int, kernel: Floats, fine: int) -> Floats:
+    """Least squares along the first axis: (n, m) to (count, m)."""
+    pixels = len(photo)
+    where = axis(pixels * fine, count, 0, pixels * fine)
+    reach = len(kernel) - 1
+    base = np.clip(where.taps.first[::fine].astype(int), 0, max(0, count - 1))
+    # The blur widens a pixel's span to that of the pixels it mixes.
+    low = base[np.maximum(0, np.arange(pixels) - reach)]
+    high = np.clip(where.taps.first[fine - 1 :: fine].astype(int) + 3, 0, count - 1)
+    span = int((high[np.minimum(pixels - 1, np.arange(pixels) + reach)] - low).max()) + 1
+    low = np.minimum(low, max(0, count - span))
+    span = min(span, count)
+    weight = np.zeros((pixels, span))
+    rows = np.arange(pixels)
+    for d in range(-reach, reach + 1):
+        source = np.arange(pixels) + d
+        while ((source < 0) | (source >= pixels)).any():
+            source = np.where(source < 0, -1 - source, source)
+            source = np.where(source >= pixels, 2 * pixels - 1 - source, source)
+        for k in range(fine):
+            point = source * fine + k
+            for t in range(4):
+                sample = np.clip(where.taps.first[point] + t, 0, count - 1)
+                weight[rows, sample - low] += kernel[abs(d)] / fine * where.taps.cubic[point, t]
+    band = np.zeros((count, span))
+    for t in range(span):
+        for u in range(t, span):
+            np.add.at(band[:, u - t], low + t, weight[:, t] * weight[:, u])
+    band[:, 0] += _PLAIN_HOLD * pixels / count
+    out = np.zeros((count, photo.shape[1]))
+    _fit.transposed(low.astype(np.int32), weight, photo, out)
+    _fit.solve_banded(band, out)
+    return out
+
+
+def fit_samples(
+    photo: Grey32,
+    edges: EdgeList,
+    start: Floats,
+    blur: float,
+    fine: int = AREA,
+    *,
+    hold: float = HOLD,
+    threads: int | None = None,
+) -> Floats:
+    """Samples near edges, fitted to the photo; the others stay as they are.
+
+    Args:
+        photo: (h, w), 0 … 1, at least as large as the grid of samples.
+        edges: in the frame of both.
+        start: (height, width) s₀.
+        blur: standard deviation of the photo's blur beyond its pixels' area, pixels.
+        fine: AREA where its pixels are means over their area, POINT where they are samples.
+        hold: λ.
+        threads: the bytes are the same for any number.
+
+    """
+    height, width = start.shape
+    h, w = photo.shape
+    if not len(edges.edges):
+        return start
+    paths = Paths(edges, width, height)
+    work = _Fit(
+        photo,
+        paths,
+        np.ascontiguousarray(start, np.float64),
+        axis(w * fine, width, 0, w * fine),
+        axis(h * fine, height, 0, h * fine),
+        blur_kernel(blur),
+        fine,
+        hold,
+    )
+    side = max(12, round(96 * width / w))
+    out = start.copy()
+    tasks = [partial(work.band, top, side, out) for top in range(0, height, side)]
+    threading.share(tasks, threading.count(threads))
+    return out
+
+
+class _Fit:
+    """The blocks of one fit."""
+
+    def __init__(
+        self, photo: Grey32, paths: Paths, start: Floats, x: Axis, y: Axis, kernel: Floats, fine: int, hold: float
+    ) -> None:
+        self.photo, self.paths, self.start, self.x, self.y = photo, paths, start, x, y
+        self.kernel, self.fine, self.hold = kernel, fine, hold
+        self.height, self.width = start.shape
+        self.x_base, self.y_base = _bases(x, self.width, fine), _bases(y, self.height, fine)
+
+    def band(self, top: int, side: int, out: Floats) -> None:
+        """Fit the blocks whose cores are rows top … top + side of the samples, into out."""
+        bottom = min(self.height, top + side)
+        first, last = max(0, top - _HALO), min(self.height, bottom + _HALO)
+        finder = self.paths.finder(closed=True, rows=(max(0, first - _HALO), min(self.height, last + _HALO)))
+        tile = _tile.Tile(finder, self.x.step, self.y.step, 1 + spill(1.0))
+        for left in range(0, self.width, side):
+            self.block(tile, (top, bottom, first, last), left, min(self.width, left + side), out)
+
+    def block(self, tile: _tile.Tile, band: tuple[int, int, int, int], left: int, right: int, out: Floats) -> None:
+        """Fit one block, if an edge is near it."""
+        top, bottom, first, last = band
+        begin, end = max(0, left - _HALO), min(self.width, right + _HALO)
+        if _fit.clear(tile, left - _NEAR, top - _NEAR, right + _NEAR, bottom + _NEAR):
+            return
+        rows, columns = _pixels(self.y_base, first, last, self.height), _pixels(self.x_base, begin, end, self.width)
+        if rows[0] >= rows[1] or columns[0] >= columns[1]:
+            return
+        shape = rows[1] - rows[0], columns[1] - columns[0]
+        weight = np.empty((*shape, _SPAN * _SPAN), np.float32)
+        x, y = self.x, self.y
+        tiles = np.array([*_tiles(y, *rows, self.fine), *_tiles(x, *columns, self.fine)], np.int32)
+        matters = _fit.rows(
+            tile, x.taps.where, x.taps.cubic, x.taps.bspline, x.cell, x.first,
+            y.taps.where, y.taps.cubic, y.taps.bspline, y.cell, y.first,
+            tiles, np.array([rows[0], columns[0]], np.int32), self.fine, self.x_base, self.y_base, 1.0, weight,
+        )  # fmt: skip
+        if not matters:
+            return
+        samples = np.ascontiguousarray(self.start[first:last, begin:end])
+        _fit.solve(
+            weight,
+            self.x_base[columns[0] : columns[1]] - np.int32(begin), self.y_base[rows[0] : rows[1]] - np.int32(first),
+            self.kernel, np.ascontiguousarray(self.photo[rows[0] : rows[1], columns[0] : columns[1]]),
+            self.hold, _STEPS, samples, np.empty((3, *samples.shape)), np.empty((2, *shape)),
+        )  # fmt: skip
+        out[top:bottom, left:right] = samples[top - first : bottom - first, left - begin : right - begin]
+
+
+def _bases(along: Axis, count: int, fine: int) -> npt.NDArray[np.int32]:
+    """First of the 5 samples that each pixel depends on."""
+    return np.clip(along.taps.first[::fine], 0, max(0, count - _SPAN)).astype(np.int32)
+
+
+def _pixels(base: npt.NDArray[np.int32], first: int, last: int, count: int) -> tuple[int, int]:
+    """The pixels (from, to) all of whose samples are first … last − 1."""
+    begin = int(np.searchsorted(base, first, "left"))
+    end = int(np.searchsorted(base, last - min(_SPAN, count), "right"))
+    return begin, end
+
+
+def _tiles(along: Axis, begin: int, end: int, fine: int) -> tuple[int, int]:
+    """The tiles (from, to) that hold the points of pixels begin … end − 1."""
+    first = int(np.searchsorted(along.first, begin * fine, "right")) - 1
+    return first, int(np.searchsorted(along.first, end * fine, "left"))
