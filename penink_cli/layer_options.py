@@ -71,7 +71,7 @@ def page_options(function: F) -> F:
             "--paper",
             type=Paper(),
             metavar="NAME|WxH",
-            help="Put the picture in the middle of a4, letter … or 210mmx297mm.  [default: a page of the picture's size]",
+            help="Put the picture in the middle of a4, letter … or 210mmx297mm.  [default: the picture's size]",
         ),
     ):
         function = decorate(function)

@@ -31,6 +31,8 @@ SUBCOMMANDS = {
     "to-ps": ("to_ps", "Write strokes as PostScript."),
     "to-svg": ("to_svg", "Write strokes as SVG, for drawing programs, the web and pen plotters."),
     "to-pdf": ("to_pdf", "Write strokes as a PDF page of vector paths."),
+    "to-pgm": ("to_pgm", "Draw strokes into a grey image, by the area that ink covers."),
+    "to-png": ("to_png", "Draw strokes into a PNG image, by the area that ink covers."),
 }
 
 

@@ -64,7 +64,8 @@ def lay_out(
     if paper is None:
         page = Page(width + 2 * margin, height + 2 * margin, margin, margin)
         if max(page.width, page.height) > LIMIT:
-            raise ParameterError(f"a page of {page.width:.0f} x {page.height:.0f} points; up to {LIMIT:.0f} are possible")
+            size = f"{page.width:.0f} x {page.height:.0f}"
+            raise ParameterError(f"a page of {size} points; up to {LIMIT:.0f} are possible")
         return page
     short, long = sorted(paper_size(paper))
     page_width, page_height = (long, short) if landscape else (short, long)
@@ -74,7 +75,7 @@ def lay_out(
         advice = f"blast it {width * scale / 72:.2f}in wide or less" if scale > 0.01 else "the margin leaves no room"
         size = f"{width / 72:.2f} x {height / 72:.2f} in"
         room = f"{max(room_x, 0) / 72:.2f} x {max(room_y, 0) / 72:.2f} in"
-        raise ParameterError(f"the picture, {size}, is larger than the {room} that {paper} has within its margins: {advice}")
+        raise ParameterError(f"the picture, {size}, is larger than {paper} less its margins, {room}: {advice}")
     x, y = (page_width - width) / 2, (page_height - height) / 2
     return Page(page_width, page_height, x, y, paper.lower(), landscape)
 

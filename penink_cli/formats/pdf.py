@@ -66,7 +66,7 @@ def _paths(layer: Strokes, page: Page) -> list[bytes]:
     if not len(layer):
         return []
     counts = np.diff(layer.first)
-    exact = (layer.points + (page.x, page.y)) * (1, -1) + (0, page.height)
+    exact = layer.points * (1, -1) + np.array((page.x, page.height - page.y))
     grid = words.whole(exact * 10**DECIMALS)
     last = layer.first[1:] - 1
     # A dot is a line to itself: its numbers stand twice.

@@ -51,7 +51,8 @@ def _paths(layer: Strokes, start: int, stop: int, page: Page, usual: float) -> m
     """Strokes start … stop - 1, each a path: M x y and cubic segments relative to where they begin."""
     first = layer.first[start : stop + 1] - layer.first[start]
     counts = np.diff(first)
-    grid = words.whole((layer.points[layer.first[start] : layer.first[stop]] + (page.x, page.y)) * (MM * 10**DECIMALS))
+    points = layer.points[layer.first[start] : layer.first[stop]] + np.array((page.x, page.y))
+    grid = words.whole(points * (MM * 10**DECIMALS))
     inner = np.arange(len(grid)) - np.repeat(first[:-1], counts)
     origin = np.arange(len(grid)) - np.where(inner > 0, (inner - 1) % 3 + 1, 0)
     numbers = np.where((inner > 0)[:, None], grid - grid[origin], grid)
@@ -59,7 +60,8 @@ def _paths(layer: Strokes, start: int, stop: int, page: Page, usual: float) -> m
     begin = b'<path d="M'
     ends = [b"" if p == usual else b' stroke-width="%s"' % _number(p * MM, 4).encode() for p in pens.tolist()]
     # A dot is a line of a micrometre: one without length is not drawn by all, and dropped by vpype.
-    table = [b" ", b"c", begin, *(b'"%s/>\n%s' % (e, begin) for e in ends), *(b'h.001"%s/>\n%s' % (e, begin) for e in ends)]
+    lines = [b'"%s/>\n%s' % (end, begin) for end in ends]
+    table = [b" ", b"c", begin, *lines, *(b"h.001" + line for line in lines)]
     after = np.zeros((len(grid), 2), np.int32)
     after[first[:-1], 1] = 1
     after[first[1:] - 1, 1] = 3 + pen + np.where(counts == 1, len(ends), 0)

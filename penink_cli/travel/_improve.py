@@ -66,7 +66,7 @@ def _reverse(
         length = n - length
     if length > LONGEST:
         return -1
-    for k in range((length + 1) // 2):
+    for _ in range((length + 1) // 2):
         a = tour[i]
         b = tour[j]
         tour[i] = b

@@ -53,7 +53,9 @@ def build(
 @cython.nogil
 @cython.inline
 @cython.exceptval(check=False)
-def _box_distance(boxes: cython.double[:, ::1], node: cython.Py_ssize_t, x: cython.double, y: cython.double) -> cython.double:
+def _box_distance(
+    boxes: cython.double[:, ::1], node: cython.Py_ssize_t, x: cython.double, y: cython.double
+) -> cython.double:
     """Squared distance from (x, y) to a node's box."""
     dx: cython.double = max(boxes[node, 0] - x, x - boxes[node, 2])
     dy: cython.double = max(boxes[node, 1] - y, y - boxes[node, 3])

@@ -79,10 +79,19 @@ def _planted(ends: Floats, order: np.ndarray) -> tuple[Floats, np.ndarray, Float
 
 
 def _morton(points: Floats) -> Ints:
-    """Place of each point along a Morton curve of 2^26 × 2^26 cells over their bounding box."""
+    """Place of each point along a Morton curve of 2^26 × 2^26 cells over their bounding box, or of their ranks."""
     low = points.min(axis=0)
     side = float((points - low).max())
-    cells = ((points - low) * ((2**26 - 1) / side if side > 0 else 0.0)).astype(np.int64)
+    codes = _interleaved(((points - low) * ((2**26 - 1) / side if side > 0 else 0.0)).astype(np.int64))
+    if len(points) > 1000 and len(np.unique(codes[::97])) < len(codes[::97]) / 2:
+        # Most points share cells, as beside one that is far off. Ranks are spread evenly, wherever the points are.
+        ranks = np.argsort(np.argsort(points, axis=0, kind="stable"), axis=0, kind="stable")
+        codes = _interleaved(ranks)
+    return codes
+
+
+def _interleaved(cells: Ints) -> Ints:
+    """Bits of x and y (n, 2), below 2^32, by turns."""
     for shift, mask in ((16, 0x0000FFFF0000FFFF), (8, 0x00FF00FF00FF00FF), (4, 0x0F0F0F0F0F0F0F0F),
                         (2, 0x3333333333333333), (1, 0x5555555555555555)):  # fmt: skip
         cells = (cells | (cells << shift)) & mask

@@ -1,0 +1,102 @@
+"""``penink to-pgm``, which is ``to-png`` too."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import click
+
+from penink_cli.errors import ParameterError
+from penink_cli.formats.page import lay_out
+from penink_cli.formats.pgm import check_size
+from penink_cli.formats.raster import cover
+from penink_cli.layer_options import files_argument, page_options, read_layers
+from penink_cli.options import Finite, output_options, processors, threads_option
+from penink_cli.progress import progress
+from penink_cli.streams import writing
+
+
+def _pixels(
+    files: tuple[str, ...],
+    paper: str | None,
+    margin: float,
+    landscape: bool,
+    dpi: float,
+    bits: int,
+    threads: int | None,
+    output: str | None,
+    max_pixels: int,
+    quiet: bool,
+    png: bool,
+) -> None:
+    layers = read_layers(files)
+    page = lay_out(layers, paper, margin, landscape)
+    width, height = cover.size(page, dpi)
+    check_size(width, height, max_pixels)
+    if png and max(width, height) >= 2**31:
+        raise ParameterError(f"{width} x {height} pixels; a PNG file has less than 2147483648 a side")
+    maxval = 2**bits - 1
+    with writing(output) as out, progress(height, "drawing", quiet) as done:
+
+        def bands() -> Any:
+            for band in cover.bands(layers, page, dpi, maxval, threads or processors()):
+                yield band
+                done(len(band))
+
+        if png:
+            from penink_cli.formats.raster import png as png_file
+
+            png_file.write(out, (width, height), dpi, bits, bands())
+        else:
+            out.write(b"P5\n%d %d\n%d\n" % (width, height, maxval))
+            for band in bands():
+                out.write(band.data)
+
+
+def _options(function: Any) -> Any:
+    for decorate in (
+        files_argument,
+        click.option(
+            "--dpi", type=Finite(above=0, most=1e6), default=150.0, metavar="N", help="Pixels an inch.  [default: 150]"
+        ),
+        click.option(
+            "--bits",
+            type=click.IntRange(1, 8),
+            default=8,
+            metavar="1…8",
+            help="Bits a pixel; with 1 a pixel is black if ink covers half of it.  [default: 8]",
+        ),
+        page_options,
+        threads_option,
+        output_options,
+    ):
+        function = decorate(function)
+    return function
+
+
+@click.command(name="to-pgm")
+@_options
+def to_pgm(output: str | None, **options: Any) -> None:
+    """Draw strokes into a grey image, by the area of each pixel that ink covers.
+
+    The image is PGM, or PNG where the name of -o ends in .png (to-png writes PNG anywhere). Several
+    FILEs are drawn over one another.
+
+    \b
+    penink to-pgm --dpi 300 photo.strokes.jsonl | penink enlarge --scale 0.5 -o small.pgm
+    penink to-pgm photo.strokes.jsonl -o preview.png
+    """
+    _pixels(output=output, png=bool(output and output.lower().endswith(".png")), **options)
+
+
+@click.command(name="to-png")
+@_options
+def to_png(output: str | None, **options: Any) -> None:
+    """Draw strokes into a PNG image, by the area of each pixel that ink covers.
+
+    The same picture as to-pgm's. Several FILEs are drawn over one another.
+
+    \b
+    penink to-png --dpi 300 photo.strokes.jsonl -o photo.png
+    """
+    _pixels(output=output, png=True, **options)

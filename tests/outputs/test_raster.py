@@ -1,0 +1,122 @@
+"""Strokes as pixels: the area that ink covers."""
+
+import io
+import json
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from PIL import Image
+
+from penink_cli.formats.page import Page, lay_out
+from penink_cli.formats.raster import _cover, cover, png
+from tests.outputs.drawings import crosshatch, every_kind, strokes_of
+from tests.outputs.rendering import difference, ghostscript, pixels
+
+
+def picture(layers, dpi, maxval=255, threads=1, page=None):
+    return np.concatenate(list(cover.bands(layers, page or lay_out(layers), dpi, maxval, threads)))
+
+
+def oracle(drawing, dpi, fine=16):
+    """Ink by distance: a point is inked if it is within half a pen of a curve, sampled finely."""
+    w, h = cover.size(lay_out([drawing]), dpi)
+    y, x = (np.mgrid[: h * fine, : w * fine] + 0.5) * (72 / dpi / fine)
+    inked = np.zeros(x.shape, bool)
+    t = np.linspace(0, 1, 400)[:, None]
+    for i, pen in enumerate(drawing.widths):
+        points = drawing[i]
+        pieces = [
+            (1 - t) ** 3 * a + 3 * (1 - t) ** 2 * t * b + 3 * (1 - t) * t**2 * c + t**3 * d
+            for a, b, c, d in (points[k : k + 4] for k in range(0, len(points) - 1, 3))
+        ]
+        for px, py in np.concatenate(pieces) if pieces else points:
+            inked |= (x - px) ** 2 + (y - py) ** 2 <= pen * pen / 4
+    return 255 * (1 - inked.reshape(h, fine, w, fine).mean(axis=(1, 3)))
+
+
+def test_the_compiled_build_is_the_one_under_test():
+    assert _cover.COMPILED
+
+
+coordinate = st.floats(-3, 15)
+
+
+@settings(max_examples=25, deadline=None)
+@given(
+    st.lists(
+        st.one_of(
+            st.lists(st.tuples(coordinate, coordinate), min_size=4, max_size=4),
+            st.lists(st.tuples(coordinate, coordinate), min_size=1, max_size=1),
+            st.tuples(coordinate, coordinate).map(lambda p: [p, p, p, p]),
+            st.tuples(coordinate, coordinate, coordinate).map(lambda v: [(v[0], v[2]), (v[0], v[2]), (v[1], v[2]), (v[1], v[2])]),
+        ),
+        max_size=3,
+    ),
+    st.floats(0.2, 4),
+)
+def test_against_the_slow_way(chains, pen):
+    drawing = strokes_of(chains, pen, 12, 9)
+    ours, slow = picture([drawing], 72).astype(float), oracle(drawing, 72)
+    assert np.abs(ours - slow).max() <= 14  # of 255: the oracle's curves are beads on a string
+    assert abs(ours.mean() - slow.mean()) <= 1.5
+
+
+def test_overlaps_count_once():
+    line = [[2, 5], [4, 5], [6, 5], [8, 5]]
+    assert np.array_equal(picture([strokes_of([line] * 5, 1.3, 10, 10)], 300), picture([strokes_of([line], 1.3, 10, 10)], 300))
+
+
+def test_a_bar_covers_what_it_covers():
+    bar = strokes_of([[[-5, 5], [0, 5], [10, 5], [15, 5]]], 3.0, 10, 10)  # ink from y = 3.5 to 6.5
+    assert picture([bar], 72)[:, 4].tolist() == [255, 255, 255, 128, 0, 0, 128, 255, 255, 255]
+    assert picture([bar], 72, maxval=1)[:, 4].tolist() == [1, 1, 1, 0, 0, 0, 0, 1, 1, 1]
+    assert set(picture([bar], 72, maxval=7).ravel().tolist()) == {0, 4, 7}
+
+
+@pytest.mark.parametrize("dpi", [10, 100, 333])
+def test_any_number_of_threads_and_height_of_bands_gives_the_same_pixels(monkeypatch, dpi):
+    layers = [every_kind(), crosshatch(300, 144)]
+    expected = picture(layers, dpi)
+    for threads in (2, 3, 8):
+        assert np.array_equal(picture(layers, dpi, threads=threads), expected)
+    monkeypatch.setattr(cover, "ROOM", 1)
+    assert np.array_equal(picture(layers, dpi, threads=2), expected)
+
+
+def test_ghostscript_agrees(tmp_path):
+    from tests.outputs.test_postscript import written
+
+    drawing = crosshatch(1500, 216)
+    (tmp_path / "a.eps").write_bytes(written([drawing]))
+    assert difference(picture([drawing], 300).astype(float), ghostscript(tmp_path / "a.eps", 300, True, "-g900x900"), 300) < 0.5
+
+
+def test_a_page_with_a_margin_puts_ink_where_it_belongs():
+    dot = strokes_of([[[0, 0]]], 2, 10, 10)
+    shot = picture([dot], 72, page=Page(30, 20, 10, 5))
+    assert shot.shape == (20, 30)
+    assert set(zip(*np.nonzero(shot < 200))) == {(4, 9), (4, 10), (5, 9), (5, 10)}
+
+
+@pytest.mark.parametrize("bits", range(1, 9))
+@pytest.mark.parametrize("width", [1, 7, 16, 33])
+def test_png_holds_the_same_pixels(bits, width):
+    rng = np.random.default_rng(bits)
+    values = rng.integers(0, 2**bits, (21, width), np.uint8)
+    out = io.BytesIO()
+    png.write(out, (width, 21), 300, bits, [values[:8], values[8:20], values[20:]])
+    image = Image.open(io.BytesIO(out.getvalue()))
+    image.load()
+    assert image.size == (width, 21)
+    assert image.info["dpi"] == pytest.approx((300, 300), abs=0.01)
+    assert np.abs(pixels(out.getvalue()) - values * (255 / (2**bits - 1))).max() <= 0.5
+    assert json.dumps(sorted(image.info)) == '["dpi"]'  # no date, no software
+
+
+def test_strokes_far_away_cost_nothing_and_do_nothing():
+    far = strokes_of([[[1e7, 1e7]], [[-1e7, 5]], [[-1e7, 5], [-1e6, 5], [1e6, 5], [1e7, 5]]], 1, 10, 10)
+    shot = picture([far], 72)
+    assert (shot[[0, 1, 2, 3, 6, 7, 8, 9]] == 255).all()
+    assert (shot[[4, 5]] < 255).all()
