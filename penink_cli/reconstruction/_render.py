@@ -7,6 +7,7 @@ In double, or for 8-bit output in float, which vectorises twice as wide; what pi
 import cython
 from cython.cimports.libc.math import sqrt, sqrtf
 from cython.cimports.libc.stdlib import free, malloc, realloc
+from cython.cimports.libc.string import memcpy
 from cython.cimports.penink_cli.reconstruction._tile import Tile
 
 COMPILED = cython.compiled
@@ -23,7 +24,7 @@ FAR = cython.declare(cython.float, 1e30)  # a distance no path has
 class Desk:
     """Scratch of one thread. Arrays of 64 hold one number a pixel of the tile, row by row."""
 
-    bits: cython.p_double  # 256 × 8: a byte as eight numbers, 0 or 1
+    bits: cython.p_double  # 256 × 8: a byte as eight numbers, 0 or 1 for each bit
     bits_single: cython.p_float
     alpha: cython.p_double  # 16 × 64: attenuation of each sample
     alpha_single: cython.p_float
@@ -84,12 +85,20 @@ def measure(out: cython.pointer[real], ux: cython.pointer[real], uy: cython.poin
     """Distance of each pixel of the tile from a point."""
     r: cython.int
     c: cython.int
+    across: real[8]
+    squares: real[64]
+    down: real
+    for c in range(8):
+        across[c] = (ux[c] - x) * (ux[c] - x)
     for r in range(ny):
+        down = (uy[r] - y) * (uy[r] - y)
         for c in range(8):
-            if real is cython.float:
-                out[8 * r + c] = sqrtf((ux[c] - x) * (ux[c] - x) + (uy[r] - y) * (uy[r] - y))
-            else:
-                out[8 * r + c] = sqrt((ux[c] - x) * (ux[c] - x) + (uy[r] - y) * (uy[r] - y))
+            squares[8 * r + c] = across[c] + down
+    for r in range(8 * ny):
+        if real is cython.float:
+            out[r] = sqrtf(squares[r])
+        else:
+            out[r] = sqrt(squares[r])
 
 
 @cython.cfunc
@@ -99,7 +108,6 @@ def attenuate(desk: Desk, tile: Tile, ux: cython.pointer[real], uy: cython.point
     """Equation 4 for every sample and pixel of a tile, from what the tile sees and the bends of the hidden samples."""
     s: cython.int
     k: cython.int
-    i: cython.int
     m: cython.int
     at: cython.int
     end: cython.int
@@ -110,7 +118,12 @@ def attenuate(desk: Desk, tile: Tile, ux: cython.pointer[real], uy: cython.point
     limit: cython.double
     d: cython.double
     t: real
-    f: real
+    zero: real = 0
+    one: real = 1
+    three: real = 3
+    far: real = FAR
+    veil: real[64]
+    row_size: cython.size_t = 8 * cython.sizeof(real)
     length: real
     row: cython.Py_ssize_t
     hidden: cython.ulonglong
@@ -166,8 +179,9 @@ def attenuate(desk: Desk, tile: Tile, ux: cython.pointer[real], uy: cython.point
                 y = tile.scene.vy[v] - tile.cy
                 measure(near, ux, uy, ny, x, y)
                 for k in range(ny):
-                    for i in range(8):
-                        near[8 * k + i] += (1 - bits[8 * ((seen >> (8 * k)) & 255) + i]) * FAR
+                    memcpy(veil + 8 * k, bits + 8 * (~(seen >> (8 * k)) & 255), row_size)
+                for k in range(n):
+                    near[k] += veil[k] * far
             slot = tile.node_place[node]
             if slot < 0 or not (desk.node_mask[slot] & hidden):
                 continue
@@ -192,20 +206,19 @@ def attenuate(desk: Desk, tile: Tile, ux: cython.pointer[real], uy: cython.point
             measure(straight, ux, uy, ny, x, y)
             for k in range(n):
                 t = (best[k] - straight[k]) / radius
-                t = t if t < 1 else 1
-                t = t if t > 0 else 0
-                best[k] = 1 - t * t * (3 - 2 * t)
+                t = t if t < one else one
+                t = t if t > zero else zero
+                best[k] = one - t * t * (three - (t + t))
             for k in range(ny):
-                for i in range(8):
-                    f = 1 - bits[8 * ((hidden >> (8 * k)) & 255) + i]
-                    alpha[8 * k + i] = f + (1 - f) * best[8 * k + i]
+                memcpy(veil + 8 * k, bits + 8 * ((hidden >> (8 * k)) & 255), row_size)
+            for k in range(n):
+                alpha[k] = (one - veil[k]) + veil[k] * best[k]
         elif (tile.all_hidden >> s) & 1:
             desk.kind[s] = 0
         else:
             desk.kind[s] = 2
             for k in range(ny):
-                for i in range(8):
-                    alpha[8 * k + i] = 1 - bits[8 * ((hidden >> (8 * k)) & 255) + i]
+                memcpy(alpha + 8 * k, bits + 8 * (~(hidden >> (8 * k)) & 255), row_size)
 
 
 @cython.cfunc
@@ -223,7 +236,8 @@ def add_up(
     """Numerator and denominator of equation 5 for every pixel.
 
     f: the 16 samples. kx: 4 × 8, weights of the tile's columns. ky: 8 × 4, of its rows. Samples that count fully
-    throughout the tile are summed as separable, those that do not count at all are left out.
+    throughout the tile are summed as separable, those that do not count at all are left out. The sums are kept in local
+    arrays: nothing can alias them, so the loops vectorise.
     """
     s: cython.int
     i: cython.int
@@ -239,6 +253,8 @@ def add_up(
     mine: real[32]
     rows: real[4]
     ones: real[4]
+    t: real[64]
+    b: real[64]
     if real is cython.float:
         all_alpha = desk.alpha_single
     else:
@@ -257,8 +273,8 @@ def add_up(
             rows[i] = v
             ones[i] = one
         for c in range(8):
-            top[8 * r + c] = rows[0] * kx[c] + rows[1] * kx[8 + c] + rows[2] * kx[16 + c] + rows[3] * kx[24 + c]
-            bottom[8 * r + c] = ones[0] * kx[c] + ones[1] * kx[8 + c] + ones[2] * kx[16 + c] + ones[3] * kx[24 + c]
+            t[8 * r + c] = rows[0] * kx[c] + rows[1] * kx[8 + c] + rows[2] * kx[16 + c] + rows[3] * kx[24 + c]
+            b[8 * r + c] = ones[0] * kx[c] + ones[1] * kx[8 + c] + ones[2] * kx[16 + c] + ones[3] * kx[24 + c]
     for s in range(16):
         if desk.kind[s] != 2:
             continue
@@ -270,8 +286,11 @@ def add_up(
             y = ky[4 * r + j]
             for c in range(8):
                 w = y * kx[i + c] * alpha[8 * r + c]
-                bottom[8 * r + c] += w
-                top[8 * r + c] += w * v
+                b[8 * r + c] += w
+                t[8 * r + c] += w * v
+    for r in range(8 * ny):
+        top[r] = t[r]
+        bottom[r] = b[r]
 
 
 @cython.cfunc
@@ -306,8 +325,13 @@ def blend(
     bottom_b: real[64]
     t: real
     w: real
-    least: real
+    low: cython.int
+    value: real[64]
+    half: real = T1
     threshold: real = T2
+    zero: real = 0
+    one: real = 1
+    three: real = 3
     for c in range(8):  # columns that the tile lacks repeat its last
         k = c if c < tile.nx else tile.nx - 1
         ux[c] = tile.px[k] - tile.cx
@@ -316,33 +340,34 @@ def blend(
     for s in range(16):
         f[s] = samples[cython.cast(cython.Py_ssize_t, tile.row[s >> 2]) * tile.scene.width + tile.column[s & 3]]
     attenuate(desk, tile, ux, uy, radius)
-    least = 0
     if not only_b:
         columns(kx, xc, tile.nx)
         add_up(desk, f, kx, yc, tile.ny, top, bottom)
-        least = 1
+        low = 0
         for k in range(n):
-            least = bottom[k] if bottom[k] < least else least
-        if least >= T1:
+            low += 1 if bottom[k] < half else 0
+        if low == 0:
             for k in range(n):
-                out[k] = top[k] / bottom[k]
+                value[k] = top[k] / bottom[k]
+            memcpy(out, value, n * cython.sizeof(real))
             return
     columns(kx, xb, tile.nx)
     add_up(desk, f, kx, yb, tile.ny, top_b, bottom_b)
-    least = 1
+    low = 0
+    for k in range(n):
+        low += 1 if bottom_b[k] < threshold else 0
     if only_b:
         for k in range(n):
-            least = bottom_b[k] if bottom_b[k] < least else least
-            out[k] = top_b[k] / bottom_b[k]
+            value[k] = top_b[k] / bottom_b[k]
     else:
         for k in range(n):
-            least = bottom_b[k] if bottom_b[k] < least else least
-            t = bottom[k] * 2  # ω = S(den / T1)
-            t = t if t < 1 else 1
-            t = t if t > 0 else 0
-            w = t * t * (3 - 2 * t)
-            out[k] = (w * top[k] + (1 - w) * top_b[k]) / (w * bottom[k] + (1 - w) * bottom_b[k])
-    if least >= threshold:
+            t = bottom[k] / half  # ω = S(den / T1)
+            t = t if t < one else one
+            t = t if t > zero else zero
+            w = t * t * (three - (t + t))
+            value[k] = (w * top[k] + (one - w) * top_b[k]) / (w * bottom[k] + (one - w) * bottom_b[k])
+    if low == 0:
+        memcpy(out, value, n * cython.sizeof(real))
         return
     # Starved pixels: plain convolution, across the edges.
     for s in range(16):
@@ -355,11 +380,13 @@ def blend(
         add_up(desk, f, kx, yc, tile.ny, top, bottom)
     for k in range(n):
         t = bottom_b[k] / threshold
-        if t <= 0:
+        if t <= zero:
             out[k] = top[k]
-        elif t < 1:
-            w = t * t * (3 - 2 * t)
-            out[k] = w * out[k] + (1 - w) * top[k]
+        elif t >= one:
+            out[k] = value[k]
+        else:
+            w = t * t * (three - (t + t))
+            out[k] = w * value[k] + (one - w) * top[k]
 
 
 @cython.cfunc
@@ -448,12 +475,13 @@ def combine_row(
     x: cython.Py_ssize_t
     v: real
     half: real = 0.5
+    zero: real = 0
     for x in range(n):
         v = f0[x] * w0 + f1[x] * w1 + f2[x] * w2 + f3[x] * w3
         if stored is cython.double:
             out[x] = v
         else:
-            v = v if v > 0 else 0
+            v = v if v > zero else zero
             v = v if v < maxval else maxval
             out[x] = cython.cast(cython.int, v + half)
 
@@ -490,7 +518,9 @@ def retouch(
     ny: cython.int
     v: real
     half: real = 0.5
+    zero: real = 0
     values: real[64]
+    rounded: stored[64]
     with cython.nogil:
         for a in range(y_cell.shape[0]):
             ny = y_begin[a + 1] - y_begin[a]
@@ -507,12 +537,23 @@ def retouch(
                     cython.address(yc[y_begin[a], 0]), cython.address(yb[y_begin[a], 0]),
                     radius, only_b, values,
                 )  # fmt: skip
-                for r in range(ny):
-                    for c in range(nx):
-                        v = values[8 * r + c]
-                        if stored is cython.double:
-                            out[y_begin[a] + r, x_begin[b] + c] = v
-                        else:
-                            v = v if v > 0 else 0
-                            v = v if v < maxval else maxval
-                            out[y_begin[a] + r, x_begin[b] + c] = cython.cast(cython.int, v + half)
+                if stored is cython.double:
+                    for r in range(ny):
+                        for c in range(nx):
+                            out[y_begin[a] + r, x_begin[b] + c] = values[8 * r + c]
+                else:
+                    for r in range(8 * ny):
+                        v = values[r]
+                        v = v if v > zero else zero
+                        v = v if v < maxval else maxval
+                        rounded[r] = cython.cast(cython.int, v + half)
+                    if nx == 8:
+                        for r in range(ny):
+                            memcpy(
+                                cython.address(out[y_begin[a] + r, x_begin[b]]), rounded + 8 * r,
+                                8 * cython.sizeof(stored),
+                            )  # fmt: skip
+                    else:
+                        for r in range(ny):
+                            for c in range(nx):
+                                out[y_begin[a] + r, x_begin[b] + c] = rounded[8 * r + c]

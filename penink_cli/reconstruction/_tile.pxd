@@ -48,7 +48,7 @@ cdef class Tile:
     cdef unsigned long long half_plane(self, double ax, double ay, double bx, double by, bint from_sample) noexcept nogil
     cdef int box_side(self, double ax, double ay, double bx, double by) noexcept nogil
     cdef unsigned long long pixels(self) noexcept nogil
-    cdef int side_at(self, double ax, double ay, double bx, double by, bint from_sample, int c, int r) noexcept nogil
+    cdef unsigned long long exactly(self, double ax, double ay, double bx, double by, bint from_sample, unsigned long long m, unsigned long long unsure) noexcept nogil
     cdef unsigned long long edge_mask(self, int k) noexcept nogil
     cdef unsigned long long line_mask(self, int k, int sample) noexcept nogil
     cdef double nearest(self, double x, double y) noexcept nogil

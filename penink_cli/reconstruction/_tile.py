@@ -8,7 +8,7 @@ only those next to the line by the exact predicates. So the masks are exact, how
 """
 
 import cython
-from cython.cimports.libc.math import fabs, sqrt
+from cython.cimports.libc.math import fabs, fabsf, sqrt
 from cython.cimports.libc.stdlib import free, malloc, realloc
 from cython.cimports.penink_cli.arrangement._predicates import orient
 from cython.cimports.penink_cli.reconstruction._paths import Finder, side_of_query, side_of_vertex
@@ -19,7 +19,7 @@ ALL = cython.declare(cython.ulonglong, 0xFFFFFFFFFFFFFFFF)
 ROW = cython.declare(cython.ulonglong, 0xFF)
 COLUMN = cython.declare(cython.ulonglong, 0x0101010101010101)
 SLACK = cython.declare(cython.float, 1e-5)  # of the quick tests, in samples: ten times the worst rounding of a float
-NEAR = cython.declare(cython.double, 1e-6)  # of the mask, in pixels: a hundred times the worst rounding of a double
+NEAR = cython.declare(cython.float, 2e-5)  # of the masks, in pixels: ten times the worst rounding of a float
 
 
 @cython.cclass
@@ -348,7 +348,7 @@ class Tile:
             dx = x - self.sx[s]
             dy = y - self.sy[s]
             value = dx * (mid_y - self.sy[s]) - dy * (mid_x - self.sx[s])
-            extent = fabs(dx) * half_y + fabs(dy) * half_x
+            extent = fabsf(dx) * half_y + fabsf(dy) * half_x
             positive += (1 << s) if value > extent else 0
             negative += (1 << s) if -value > extent else 0
         self.positive[k] = positive
@@ -371,15 +371,15 @@ class Tile:
         positive: cython.int = 0
         # A far end is rounded coarsely: the slack grows with its distance.
         slack: cython.float = cython.cast(cython.float, 1e-6) * (
-            fabs(dx) * (fabs(ay) + fabs(dy) + 4) + fabs(dy) * (fabs(ax) + fabs(dx) + 4)
+            fabsf(dx) * (fabsf(ay) + fabsf(dy) + 4) + fabsf(dy) * (fabsf(ax) + fabsf(dx) + 4)
         )
-        extent: cython.float = fabs(dx) * self.half_y + fabs(dy) * self.half_x + slack
+        extent: cython.float = fabsf(dx) * self.half_y + fabsf(dy) * self.half_x + slack
         value = dx * (self.mid_y - ay) - dy * (self.mid_x - ax)
         self.tile_side[k] = 1 if value > extent else (-1 if -value > extent else 0)
         for s in range(16):
             value = dx * (self.sy[s] - ay) - dy * (self.sx[s] - ax)
             positive += (1 << s) if value > slack else 0
-            unsure += 0 if fabs(value) > slack else (1 << s)
+            unsure += 0 if fabsf(value) > slack else (1 << s)
         self.sample_side[k] = positive
         s = 0
         while unsure:
@@ -432,67 +432,72 @@ class Tile:
         by_rows: cython.bint = fabs(gx) >= fabs(gy)
         main: cython.double = gx if by_rows else gy
         minor: cython.double = gy if by_rows else gx
-        lines: cython.int = self.ny if by_rows else self.nx
-        count: cython.int = self.nx if by_rows else self.ny
-        t: cython.double
-        slope: cython.double
+        start: cython.float
+        slope: cython.float
+        low: cython.float = -0.75  # not near a pixel
+        high: cython.float = 8.25
+        half: cython.float = 0.5
+        v: cython.float
+        beyond = cython.declare(cython.int[8])
+        near: cython.int = 0
         j: cython.int
-        k: cython.int
-        c: cython.int
         m: cython.ulonglong = 0
-        bits: cython.ulonglong
-        side: cython.int
         if main == 0.0:  # a is b: every pixel is a tie
-            t = 0.0
-            slope = 0.0
+            return self.exactly(ax, ay, bx, by, from_sample, m, ALL)
+        # Along line j of pixels the sign changes at v = start + j·slope; pixels beyond have the sign of main.
+        main = 1.0 / main
+        start = cython.cast(cython.float, -value * main)
+        slope = cython.cast(cython.float, -minor * main)
+        for j in range(8):
+            v = start + j * slope
+            v = v if v > low else low
+            v = v if v < high else high
+            beyond[j] = cython.cast(cython.int, v + 1)
+            v -= cython.cast(cython.int, v + half)
+            near |= (1 << j) if fabsf(v) < NEAR else 0
+        if by_rows:
+            for j in range(8):
+                m |= ((ROW << beyond[j]) & ROW) << (8 * j)
         else:
-            t = -value / main
-            slope = -minor / main
-        # Along line j of pixels the sign changes at t + j·slope; pixels beyond it are on the side of main's sign.
-        for j in range(lines):
-            value = t + j * slope
-            if value < -1.0:
-                k = 0
-            elif value > 8.0:
-                k = 8
-            else:
-                k = cython.cast(cython.int, value + 1.0)  # the first pixel beyond
-            bits = (ROW << k) & ROW if main > 0.0 else ~(ROW << k) & ROW
-            c = cython.cast(cython.int, value + 0.5) if -0.5 < value < 8.0 else -1
-            if main == 0.0:
-                bits = 0
-                for c in range(count):
-                    if self.side_at(ax, ay, bx, by, from_sample, c if by_rows else j, j if by_rows else c) > 0:
-                        bits |= cython.cast(cython.ulonglong, 1) << c
-            elif 0 <= c < count and fabs(value - c) < NEAR:
-                side = self.side_at(ax, ay, bx, by, from_sample, c if by_rows else j, j if by_rows else c)
-                if side > 0:
-                    bits |= cython.cast(cython.ulonglong, 1) << c
-                else:
-                    bits &= ~(cython.cast(cython.ulonglong, 1) << c)
-            if by_rows:
-                m |= bits << (8 * j)
-            else:  # spread the bits of a column over the rows
-                m |= spread_bits(bits) << j
+            for j in range(8):
+                m |= (COLUMN << (8 * beyond[j]) if beyond[j] < 8 else 0) << j
+        if main < 0.0:
+            m = ~m
+        if near:
+            for j in range(8):
+                if (near >> j) & 1:
+                    m = self.exactly(
+                        ax, ay, bx, by, from_sample, m, ROW << (8 * j) if by_rows else COLUMN << cython.cast(cython.ulonglong, j)
+                    )
         return m
 
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)
-    def side_at(
+    def exactly(
         self,
         ax: cython.double,
         ay: cython.double,
         bx: cython.double,
         by: cython.double,
         from_sample: cython.bint,
-        c: cython.int,
-        r: cython.int,
-    ) -> cython.int:
-        """The exact side of one pixel."""
-        if from_sample:
-            return side_of_vertex(self.px[c], self.py[r], ax, ay, bx, by)
-        return side_of_query(ax, ay, bx, by, self.px[c], self.py[r])
+        m: cython.ulonglong,
+        unsure: cython.ulonglong,
+    ) -> cython.ulonglong:
+        """A mask with those of its pixels that are unsure decided by the exact predicates."""
+        k: cython.int
+        bit: cython.ulonglong
+        side: cython.int
+        unsure &= self.pixels()
+        for k in range(64):
+            bit = cython.cast(cython.ulonglong, 1) << k
+            if unsure & bit:
+                if from_sample:
+                    side = side_of_vertex(self.px[k & 7], self.py[k >> 3], ax, ay, bx, by)
+                else:
+                    side = side_of_query(ax, ay, bx, by, self.px[k & 7], self.py[k >> 3])
+                m = m | bit if side > 0 else m & ~bit
+        return m
 
     @cython.cfunc
     @cython.nogil
@@ -550,23 +555,6 @@ class Tile:
         dx: cython.double = fabs(self.cx + self.mid_x - x) + self.half_x
         dy: cython.double = fabs(self.cy + self.mid_y - y) + self.half_y
         return sqrt(dx * dx + dy * dy)
-
-
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def spread_bits(bits: cython.ulonglong) -> cython.ulonglong:
-    """Bit k of a byte to bit 8 k of a word."""
-    return (
-        (bits & 1)
-        | ((bits & 2) << 7)
-        | ((bits & 4) << 14)
-        | ((bits & 8) << 21)
-        | ((bits & 16) << 28)
-        | ((bits & 32) << 35)
-        | ((bits & 64) << 42)
-        | ((bits & 128) << 49)
-    )
 
 
 @cython.cfunc
