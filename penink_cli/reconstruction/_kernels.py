@@ -66,3 +66,21 @@ def fill_taps(
                 for t in range(c.shape[1]):
                     c[k, t] /= sum_c
                     b[k, t] /= sum_b
+
+
+def lay_tiles(where: cython.double[::1], most: cython.int, cell: cython.int[::1], first: cython.int[::1]) -> cython.int:
+    """Cut ascending positions into tiles of at most `most` of one cell each; how many there are.
+
+    cell, first: (n,), (n + 1,) filled with the cell of each tile and its first position; last comes n.
+    """
+    k: cython.int
+    n: cython.int = 0
+    c: cython.int
+    for k in range(cython.cast(cython.int, where.shape[0])):
+        c = cython.cast(cython.int, floor(where[k]))
+        if n == 0 or c != cell[n - 1] or k - first[n - 1] == most:
+            cell[n] = c
+            first[n] = k
+            n += 1
+    first[n] = cython.cast(cython.int, where.shape[0])
+    return n

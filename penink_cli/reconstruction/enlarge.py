@@ -56,12 +56,17 @@ def enlarge(
     two, may be rounded the other way than in double.
     """
     maxval = image.maxval if maxval is None else maxval
-    rows = bands(
+    _, _, across, down = check_window(window, width, height)
+    whole = np.empty((down, across), np.uint8 if maxval < 256 else np.uint16)
+    row = 0
+    for rows in bands(
         image, edges, width, height,
-        radius=radius, kernel=kernel, soften=soften, window=window, maxval=maxval, threads=threads,
-    )  # fmt: skip
-    parts = list(rows)
-    return GreyImage(parts[0] if len(parts) == 1 else np.concatenate(parts), maxval)
+        radius=radius, kernel=kernel, soften=soften, window=window, maxval=maxval, threads=threads, into=whole,
+    ):  # fmt: skip
+        if rows.base is not whole:
+            whole[row : row + len(rows)] = rows
+        row += len(rows)
+    return GreyImage(whole, maxval)
 
 
 def bands(
@@ -76,8 +81,12 @@ def bands(
     window: Window | None = None,
     maxval: int | None = None,
     threads: int | None = None,
+    into: Rows | None = None,
 ) -> Iterator[Rows]:
-    """The rows of `enlarge` from top to bottom, some at a time, as they become ready."""
+    """The rows of `enlarge` from top to bottom, some at a time, as they become ready.
+
+    into: an array of all rows, where they may be put; those that are put there are yielded as views of it.
+    """
     maxval = image.maxval if maxval is None else maxval
     single = maxval < 256
     stored = np.dtype(np.uint8 if single else np.uint16)
@@ -85,7 +94,7 @@ def bands(
     window = check_window(window, width, height)
     if not soften:
         work = _plan(samples, edges, width, height, radius, kernel, window, single, stored, maxval)
-        yield from work.run(threading.count(threads))
+        yield from work.run(threading.count(threads), into)
         return
     half_width, half_height = -(-width // 2), -(-height // 2)
     inner = source_window(window, width, height, half_width, half_height)
@@ -161,9 +170,11 @@ class _Enlargement:
     stored: np.dtype[Any]
     maxval: int
 
-    def run(self, threads: int) -> Iterator[Rows]:
+    def run(self, threads: int, into: Rows | None = None) -> Iterator[Rows]:
         """The rows, by bands of tiles."""
         x, y = self.x, self.y
+        # Whole tiles may be more than the window: then bands are cut out of arrays of their own.
+        self.into = into if (x.begin, y.begin, x.count, y.count) == self.window else None
         plain = "bspline" if self.only_b else "cubic"
         self.across = np.ascontiguousarray(getattr(x.taps, plain).T, self.real)
         self.x_taps = x.taps.cubic.astype(self.real), x.taps.bspline.astype(self.real)
@@ -171,8 +182,9 @@ class _Enlargement:
         self.down = self.y_taps[self.only_b]
         rows = max(1, min(BAND // x.count, -(-y.count // (4 * threads))))
         # Bands of whole tiles, as even as can be.
-        cuts = np.unique(np.searchsorted(y.first, np.linspace(0, y.count, -(-y.count // rows) + 1)))
-        tasks = (partial(self.band, int(a), int(b)) for a, b in zip(cuts[:-1], cuts[1:]))
+        pieces = min(len(y.cell), -(-y.count // rows))
+        cuts = [len(y.cell) * k // pieces for k in range(pieces + 1)]
+        tasks = (partial(self.band, a, b) for a, b in zip(cuts[:-1], cuts[1:]))
         return threading.in_order(tasks, threads)
 
     def band(self, a: int, b: int) -> Rows:
@@ -183,7 +195,7 @@ class _Enlargement:
         source, last = int(first[0]), int(first[-1]) + 4
         expanded = np.empty((last - source, x.count), self.real)
         _render.expand(self.samples, source, x.taps.first, self.across, expanded)
-        out = np.empty((end - begin, x.count), self.stored)
+        out = np.empty((end - begin, x.count), self.stored) if self.into is None else self.into[begin:end]
         _render.combine(expanded, source, first, self.down[begin:end], self.maxval, out)
         if not self.paths.empty:
             h = len(self.samples)
@@ -195,6 +207,8 @@ class _Enlargement:
                 y.cell[a:b], y.first[a : b + 1] - y.first[a],
                 self.radius, self.only_b, self.maxval, out,
             )  # fmt: skip
+        if self.into is not None:
+            return out
         left, top, width, height = self.window
         return out[
             max(0, top - y.begin - begin) : top + height - y.begin - begin, left - x.begin : left - x.begin + width
@@ -215,7 +229,7 @@ class _Reduction:
     stored: np.dtype[Any]
     maxval: int
 
-    def run(self, threads: int) -> Iterator[Rows]:
+    def run(self, threads: int, into: Rows | None = None) -> Iterator[Rows]:
         """The rows, a few at a time."""
         h, w = self.samples.shape
         left, top, across, down = self.window

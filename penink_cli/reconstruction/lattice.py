@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from penink_cli.model import Floats
+from penink_cli.reconstruction import _kernels
 from penink_cli.reconstruction.kernels import Taps, taps
 
 TILE = 8  # pixels a side at most: 64 of them are the bits of one word
@@ -44,14 +45,11 @@ def axis(count: int, samples: int, begin: int, end: int) -> Axis:
     A tile never depends on which pixels are asked for: that would show in the last digit of its sums.
     """
     where = centres(count, samples)
-    cell = np.floor(where).astype(np.intc)
-    fresh = np.flatnonzero(np.diff(cell, prepend=-9))
-    inside = np.arange(count) - np.repeat(fresh, np.diff(fresh, append=count))
-    first = np.append(np.flatnonzero(inside % TILE == 0), count)
-    a = int(np.searchsorted(first, begin, "right")) - 1
-    b = int(np.searchsorted(first, end, "left"))
-    first = first[a : b + 1]
-    table = taps(where[first[0] : first[-1]])
-    return Axis(
-        samples, int(first[0]), samples / count, table, cell[first[:-1]].copy(), (first - first[0]).astype(np.intc)
-    )
+    cell, first = np.empty(count, np.intc), np.empty(count + 1, np.intc)
+    n = _kernels.lay_tiles(where, TILE, cell, first)
+    a, b = 0, n
+    if end - begin < count:
+        a = int(np.searchsorted(first[:n], begin, "right")) - 1
+        b = int(np.searchsorted(first[: n + 1], end, "left"))
+    table = taps(where[first[a] : first[b]])
+    return Axis(samples, int(first[a]), samples / count, table, cell[a:b], first[a : b + 1] - first[a])
