@@ -27,6 +27,8 @@ SUBCOMMANDS = {
     "reduce": ("reduce", "Reduce samples to a coarser grid without mixing across edges."),
     "enlarge": ("enlarge", "Reconstruct the image at any size, sharp across edges and smooth elsewhere."),
     "blast": ("blast", "Turn grey into pen strokes of the same tone."),
+    "outline": ("outline", "Turn discontinuity edges into smooth outline strokes."),
+    "render": ("render", "Draw an illustration anew for one size and one device."),
     "pack": ("pack", "Pack an illustration and its members in one small file."),
     "to-ps": ("to_ps", "Write strokes as PostScript."),
     "to-svg": ("to_svg", "Write strokes as SVG, for drawing programs, the web and pen plotters."),

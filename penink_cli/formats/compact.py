@@ -26,6 +26,7 @@ from penink_cli.errors import FormatError, LimitError
 from penink_cli.formats import edge_list
 from penink_cli.formats._compact import Coder
 from penink_cli.model import EdgeList, GreyImage, Ints
+from penink_cli.trails import trails
 
 SAMPLES, EDGES, TEXT = b"PIs1", b"PIe1", b"PIt1"
 
@@ -169,7 +170,8 @@ class _Chains:
         seen: dict[int, int] = {}
         points = grid.tolist()
         last = (0, 0)
-        for chain, strengths in _trails(grid, ends, steps):
+        for chain, along in trails(grid, ends):
+            strengths = steps[along].tolist()
             x, y = points[chain[0]]
             if chain[0] in seen:
                 coder.number(len(seen) - seen[chain[0]], _CHAIN)
@@ -250,53 +252,6 @@ class _Chains:
                     steps.append(strength)
         _check_end(coder)
         return points, ends, steps
-
-
-def _trails(grid: Ints, ends: Ints, steps: Ints) -> list[tuple[list[int], list[int]]]:
-    """The edges as few trails, each with the strengths along it, in an order given by the places of vertices alone.
-
-    Trails start where an odd number of edges meet, then, for the rings that remain, at their topmost
-    vertex; at a junction they go straight on.
-    """
-    rank = np.empty(len(grid), np.int64)
-    by_place = np.lexsort((grid[:, 0], grid[:, 1]))
-    rank[by_place] = np.arange(len(grid))
-    around: list[list[tuple[int, int]]] = [[] for _ in range(len(grid))]
-    for edge in np.lexsort((rank[ends].max(axis=1), rank[ends].min(axis=1))).tolist():
-        a, b = ends[edge].tolist()
-        around[a].append((b, edge))
-        around[b].append((a, edge))
-    points, used, strengths = grid.tolist(), bytearray(len(ends)), steps.tolist()
-
-    def onward(here: int, came: tuple[int, int] | None) -> tuple[int, int] | None:
-        free = [(to, edge) for to, edge in around[here] if not used[edge]]
-        if came is None or len(free) < 2:
-            return free[0] if free else None
-        x, y = points[here]
-
-        def bend(way: tuple[int, int]) -> float:
-            dx, dy = points[way[0]][0] - x, points[way[0]][1] - y
-            along = dx * came[0] + dy * came[1]
-            return -along * abs(along) / (dx * dx + dy * dy)
-
-        return min(free, key=bend)
-
-    trails = []
-    order = by_place.tolist()
-    for odd in (True, False):
-        for start in order:
-            while sum(not used[edge] for _, edge in around[start]) % 2 == 1 or (
-                not odd and any(not used[edge] for _, edge in around[start])
-            ):
-                chain, along, here, came = [start], [], start, None
-                while (way := onward(here, came)) is not None:
-                    used[way[1]] = 1
-                    along.append(strengths[way[1]])
-                    came = points[way[0]][0] - points[here][0], points[way[0]][1] - points[here][1]
-                    here = way[0]
-                    chain.append(here)
-                trails.append((chain, along))
-    return trails
 
 
 # ------------------------------------------------------------------------------ headers

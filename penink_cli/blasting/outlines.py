@@ -1,0 +1,253 @@
+"""Outline strokes (section 3): chains of discontinuity edges as smooth strokes of the pen.
+
+Edges are followed as a pen would, straight on at junctions; runs that are strong and long enough are
+chosen, the most telling first; a run that comes too close to ink already there is left out, so that
+double edges, small prints and layers that share an outline do not clog; what remains is
+fitted with curves, which break at corners only.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from penink_cli.blasting import curves, curve_fitting
+from penink_cli.model import EdgeList, Floats, Ints, OutlineChoice, Strokes
+from penink_cli.trails import trails
+
+TOLERANCE = 0.5  # pixels of the edge list that a curve may stray from its chain: about what edges are found to
+TOLERANCE_PT = 0.12  # or so much on paper, if that is more
+STEP = 1.0  # pixels between the points that curves are fitted to
+ARM = 3.0  # pixels to each side that tell whether a vertex is a corner
+CORNER = 0.64  # cosine of the bend, 50°, from which it is one
+ONWARD = 0.5  # cosine of the sharpest bend that a stroke takes at a junction
+CLEAR = 1.8  # pens' widths that outline strokes keep from one another
+SHORTEST = 4.0  # pens' widths: anything shorter is a crumb
+PIECE_PT = 4.0  # longest piece of one width where the pen's pressure varies
+THIN = 0.55  # of the full width, at the tips of a stroke
+TAPER_PT = 14.0  # from the tip to the full width
+WAVER = 0.16  # the pressure's variation along a stroke, up and down
+WAVER_PT = 30.0  # over about that length
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """Part of a chain: vertices (n, 2) in pixels of the edge list, whether it closes on itself, and how telling it is."""
+
+    vertices: Floats
+    ring: bool
+    weight: float
+
+
+def outline(
+    edges: EdgeList,
+    width_pt: float,
+    height_pt: float,
+    choice: OutlineChoice,
+    around: npt.NDArray[np.bool_] | None = None,
+    ink: Strokes | None = None,
+) -> Strokes:
+    """Outline strokes for a sheet of width_pt × height_pt.
+
+    around: (m,) the edges to choose from (those around the regions of the choice), None for all.
+    ink: strokes that are on the sheet already and are not to be doubled.
+    """
+    scale = np.array([width_pt / edges.width, height_pt / edges.height])
+    pixel_pt = float(min(scale))
+    clear = Clearance(width_pt, height_pt, CLEAR * choice.pen_pt)
+    if ink is not None and len(ink):
+        clear.take(_dots(ink, clear.cell))
+    parts: list[tuple[Floats, Floats]] = []
+    for run in sorted(_runs(edges, choice, around), key=lambda r: (-r.weight, *r.vertices[0])):
+        points = _resampled(run.vertices, STEP)
+        for part, ring in clear.free(points * scale, run.ring, SHORTEST * choice.pen_pt):
+            tolerance = max(TOLERANCE, TOLERANCE_PT / pixel_pt)
+            control = _smooth(points[part], ring, tolerance) * scale
+            parts.append((control, np.array([choice.pen_pt])) if choice.even else _swelling(control, choice.pen_pt))
+        clear.take(points * scale)
+    return _strokes(parts, width_pt, height_pt)
+
+
+# ------------------------------------------------------------------- which edges
+
+
+def _runs(edges: EdgeList, choice: OutlineChoice, around: npt.NDArray[np.bool_] | None) -> list[Run]:
+    """Chains, or the parts of them that are strong enough: all above half of min_strength, reaching it somewhere."""
+    ends, strength = edges.edges, edges.strength
+    if around is not None:
+        ends, strength = ends[around], None if strength is None else strength[around]
+    lengths = np.sqrt(((edges.vertices[ends[:, 0]] - edges.vertices[ends[:, 1]]) ** 2).sum(axis=1))
+    found = []
+    for vertices, chain in trails(edges.vertices, ends, ONWARD):
+        mean = _smoothed(strength[chain], lengths[chain]) if strength is not None else np.ones(len(chain))
+        strong = mean >= 0.5 * choice.min_strength
+        whole = bool(strong.all())
+        for i, j in _stretches(strong):
+            length = float(lengths[chain[i:j]].sum())
+            if length < choice.min_length or mean[i:j].max() < choice.min_strength:
+                continue
+            weight = float((mean[i:j] * lengths[chain[i:j]]).sum())
+            ring = whole and vertices[0] == vertices[-1]
+            found.append(Run(edges.vertices[vertices[i : j + 1]], ring, weight))
+    return found
+
+
+def _smoothed(strength: Floats, lengths: Floats, reach: int = 2) -> Floats:
+    """Strength along a chain, averaged over its neighbours by length."""
+    total, weight = np.zeros(len(strength)), np.zeros(len(strength))
+    for shift in range(-reach, reach + 1):
+        here = slice(max(0, shift), len(strength) + min(0, shift))
+        there = slice(max(0, -shift), len(strength) + min(0, -shift))
+        total[here] += strength[there] * lengths[there]
+        weight[here] += lengths[there]
+    return total / weight
+
+
+def _stretches(wanted: npt.NDArray[np.bool_]) -> list[tuple[int, int]]:
+    """First and one past the last of each stretch of True."""
+    change = np.flatnonzero(np.diff(np.concatenate([[False], wanted, [False]]).astype(np.int8)))
+    return [(int(i), int(j)) for i, j in zip(change[::2], change[1::2])]
+
+
+class Clearance:
+    """Which places of a sheet are close to ink, on cells of half the distance to keep."""
+
+    def __init__(self, width_pt: float, height_pt: float, distance_pt: float):
+        self.cell = max(distance_pt / 2, math.sqrt(width_pt * height_pt / 5e7))
+        self._taken = np.zeros((int(height_pt / self.cell) + 6, int(width_pt / self.cell) + 6), bool)
+        y, x = np.mgrid[-2:3, -2:3].reshape(2, -1)
+        near = x * x + y * y <= 5
+        self._disc = np.stack([y[near], x[near]], axis=1)
+
+    def _cells(self, points: Floats) -> Ints:
+        at = np.floor(points[:, ::-1] / self.cell).astype(np.int64) + 3
+        return np.clip(at, 2, np.array(self._taken.shape) - 3)
+
+    def take(self, points: Floats) -> None:
+        """There is ink at points (n, 2)."""
+        rows, columns = (self._cells(points)[:, None] + self._disc).reshape(-1, 2).T
+        self._taken[rows, columns] = True
+
+    def free(self, points: Floats, ring: bool, shortest_pt: float) -> list[tuple[slice, bool]]:
+        """The parts of a run of points (n, 2) that are clear of ink, each with whether it is the whole ring."""
+        rows, columns = self._cells(points).T
+        open_ = ~self._taken[rows, columns]
+        if open_.all():
+            return [(slice(0, len(points)), ring)]
+        steps = np.concatenate([[0.0], np.cumsum(np.sqrt(((points[1:] - points[:-1]) ** 2).sum(axis=1)))])
+        return [(slice(i, j), False) for i, j in _stretches(open_) if j - i > 1 and steps[j - 1] - steps[i] >= shortest_pt]
+
+
+def _dots(strokes: Strokes, step: float) -> Floats:
+    """Points along strokes, no further apart than step."""
+    pieces = curves.pieces_of(strokes.points, strokes.first, step)
+    return curves.sample(strokes.points, strokes.first, pieces).points
+
+
+# ------------------------------------------------------------------- smooth curves
+
+
+def _resampled(vertices: Floats, step: float) -> Floats:
+    """Points along a polyline, its vertices among them, no further apart than step."""
+    lengths = np.sqrt(((vertices[1:] - vertices[:-1]) ** 2).sum(axis=1))
+    counts = np.maximum(1, np.ceil(lengths / step)).astype(np.int64)
+    which = np.repeat(np.arange(len(counts)), counts)
+    part = (np.arange(len(which)) - np.repeat(np.cumsum(counts) - counts, counts)) / counts[which]
+    points = vertices[which] + part[:, None] * (vertices[which + 1] - vertices[which])
+    return np.concatenate([points, vertices[-1:]])
+
+
+def _smooth(points: Floats, ring: bool, tolerance: float) -> Floats:
+    """Control points (3k + 1, 2) through points (n, 2), with corners where the chain has them."""
+    corners = _corners(points, ring)
+    if ring and len(corners):
+        points = np.concatenate([points[corners[0] : -1], points[: corners[0] + 1]])
+        corners, ring = (corners - corners[0])[1:], False
+    cuts = [0, *corners.tolist(), len(points) - 1]
+    pieces = [curve_fitting.fit(points[i : j + 1], tolerance, ring) for i, j in zip(cuts, cuts[1:]) if j > i]
+    return np.concatenate([pieces[0], *(piece[1:] for piece in pieces[1:])])
+
+
+def _corners(points: Floats, ring: bool) -> Ints:
+    """Points that are corners: the sharpest bend within an arm's length, over an arm to each side."""
+    arm = max(1, round(ARM / STEP))
+    n = len(points)
+    if n < 2 * arm + 1:
+        return np.zeros(0, np.int64)
+    if ring:
+        around = np.concatenate([points[-arm - 1 : -1], points, points[1 : arm + 1]])
+        inside = np.arange(n - 1)
+    else:
+        around, inside = points, np.arange(arm, n - arm)
+    at = inside + arm if ring else inside
+    before, after = around[at] - around[at - arm], around[at + arm] - around[at]
+    size = np.sqrt((before**2).sum(axis=1) * (after**2).sum(axis=1))
+    cosine = (before * after).sum(axis=1) / np.maximum(size, 1e-12)
+    found: list[int] = []
+    for k in np.argsort(cosine, kind="stable").tolist():
+        if cosine[k] >= CORNER:
+            break
+        if all(abs(k - other) > arm for other in found):
+            found.append(k)
+    return np.sort(inside[np.array(found, np.int64)]) if found else np.zeros(0, np.int64)
+
+
+# ------------------------------------------------------------------- the pen's pressure
+
+
+def _swelling(control: Floats, pen_pt: float) -> tuple[Floats, Floats]:
+    """The same curve in short pieces, each a segment, and the width of each: thin tips, a slow waver between."""
+    segments = np.stack([control[:-1:3], control[1::3], control[2::3], control[3::3]], axis=1)
+    rough = np.sqrt(((segments[:, 1:] - segments[:, :-1]) ** 2).sum(axis=2)).sum(axis=1)
+    counts = np.maximum(1, np.ceil(rough / PIECE_PT)).astype(np.int64)
+    which = np.repeat(np.arange(len(counts)), counts)
+    k = np.arange(len(which)) - np.repeat(np.cumsum(counts) - counts, counts)
+    pieces = curves.blossom(segments[which], k / counts[which], (k + 1) / counts[which])
+    lengths = rough[which] / counts[which]
+    middle = np.cumsum(lengths) - lengths / 2
+    total = float(lengths.sum())
+    ring = bool((np.abs(control[0] - control[-1]) < 1e-9).all())
+    t = np.ones(len(middle)) if ring else np.clip(np.minimum(middle, total - middle) / min(TAPER_PT, total / 2), 0, 1)
+    taper = THIN + (1 - THIN) * t * (2 - t)
+    width = pen_pt * taper * (1 + WAVER * _noise(middle / WAVER_PT, control[0]))
+    width = np.maximum(np.round(width / pen_pt * 20) / 20, 0.3) * pen_pt
+    return pieces.reshape(-1, 2), width
+
+
+def _noise(at: Floats, place: Floats) -> Floats:
+    """Smooth noise -1 … 1 along a line, from a hash of the place where it begins."""
+    x, y = (int(v) for v in np.floor(place * 16).tolist())
+    key = ((x * 73856093) ^ (y * 19349663)) & 0xFFFFFFFF
+    knots = np.arange(int(at[-1]) + 3, dtype=np.uint64) * np.uint64(2654435761) + np.uint64(key)
+    knots = (knots ^ (knots >> np.uint64(15))) * np.uint64(2246822519) & np.uint64(0xFFFFFFFF)
+    knots = (knots ^ (knots >> np.uint64(13))) * np.uint64(3266489917) & np.uint64(0xFFFFFFFF)
+    values = (knots >> np.uint64(8)).astype(np.float64) / (1 << 23) - 1
+    i = np.floor(at).astype(np.int64)
+    t = at - i
+    return np.asarray(values[i] + (values[i + 1] - values[i]) * t * t * (3 - 2 * t))
+
+
+def _strokes(parts: list[tuple[Floats, Floats]], width_pt: float, height_pt: float) -> Strokes:
+    """Curves with one width each, or pieces (4 points each) with a width each; equal neighbours are one stroke."""
+    points: list[Floats] = []
+    counts: list[int] = []
+    widths: list[float] = []
+    for control, width in parts:
+        if len(width) == 1:
+            points.append(control)
+            counts.append(len(control))
+            widths.append(float(width[0]))
+            continue
+        pieces = control.reshape(-1, 4, 2)
+        change = np.flatnonzero(np.diff(width) != 0) + 1
+        for i, j in zip([0, *change.tolist()], [*change.tolist(), len(width)]):
+            points.append(np.concatenate([pieces[i, :1], pieces[i:j, 1:].reshape(-1, 2)]))
+            counts.append(3 * (j - i) + 1)
+            widths.append(float(width[i]))
+    first = np.zeros(len(counts) + 1, np.int64)
+    np.cumsum(counts, out=first[1:])
+    at = np.concatenate(points) if points else np.zeros((0, 2))
+    return Strokes(width_pt, height_pt, at, first, np.array(widths))

@@ -1,0 +1,95 @@
+"""``penink outline``."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import click
+
+from penink_cli.commands.inputs import read_edges
+from penink_cli.errors import FormatError
+from penink_cli.formats import strokes
+from penink_cli.model import OutlineChoice
+from penink_cli.options import LENGTH, Finite, filter_options
+from penink_cli.streams import source_name, writing
+
+
+class Point(click.ParamType):
+    """``X,Y`` in pixels."""
+
+    name = "X,Y"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> tuple[float, float]:
+        """(x, y)."""
+        if isinstance(value, tuple):
+            return value
+        number = Finite()
+        parts = [number.convert(part, param, ctx) for part in value.split(",")]
+        if len(parts) != 2:
+            self.fail(f"{value!r} is not a point such as 120,85.5", param, ctx)
+        return parts[0], parts[1]
+
+
+@click.command(name="outline")
+@filter_options
+@click.option("--width", type=LENGTH, required=True, help="Width of the picture on paper: 4in, 100mm, 288 (points).")
+@click.option("--pen", type=LENGTH, help="Draw with a technical pen of this width, the same from end to end.")
+@click.option(
+    "--weight",
+    type=LENGTH,
+    default="0.7pt",
+    show_default=True,
+    help="Width of a hand's strokes, which swell and thin a little.",
+)
+@click.option(
+    "--min-strength",
+    type=Finite(0, 1),
+    default=0.0,
+    metavar="S",
+    help="Only chains whose strength, the grey step across them, reaches this; 0 to 1.",
+)
+@click.option("--min-length", type=Finite(0), default=0.0, metavar="N", help="Only chains of so many pixels.")
+@click.option(
+    "--region",
+    "regions",
+    type=Point(),
+    multiple=True,
+    help="Only edges around the region that holds this point, in pixels of the photo; may be repeated.",
+)
+def outline(
+    file: str | None,
+    output: str | None,
+    width: float,
+    pen: float | None,
+    weight: float,
+    min_strength: float,
+    min_length: float,
+    regions: tuple[tuple[float, float], ...],
+    **_: Any,
+) -> None:
+    """Turn discontinuity edges into smooth outline strokes.
+
+    Chains of edges become curves; they keep clear of one another, the strongest first.
+
+    \b
+    penink outline --width 4in --min-strength 0.2 photo.edges.json > outlines.strokes.jsonl
+    penink to-ps hatching.strokes.jsonl outlines.strokes.jsonl -o photo.ps
+    """
+    from penink_cli.commands.blast import check_size
+    from penink_cli.drawing import outline_strokes
+
+    edges = read_edges(file)
+    if edges is None:
+        raise FormatError("no edges", source_name(file))
+    height = width * edges.height / edges.width
+    check_size(width, height)
+    choice = OutlineChoice(
+        pen_pt=weight if pen is None else pen,
+        even=pen is not None,
+        min_strength=min_strength,
+        min_length=min_length,
+        regions=regions,
+    )
+    drawn = outline_strokes(edges, width, height, choice)
+    with writing(output, binary=False) as out:
+        strokes.write(out, drawn)

@@ -1,0 +1,87 @@
+"""``penink render``."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import click
+
+from penink_cli.commands.blast import DeviceDpi, check_size
+from penink_cli.commands.inputs import read_illustration
+from penink_cli.errors import ParameterError, printable
+from penink_cli.formats import strokes
+from penink_cli.model import Illustration
+from penink_cli.options import LENGTH, POSITIVE, filter_options, processors, threads_option
+from penink_cli.streams import writing
+
+
+@click.command()
+@filter_options
+@click.option("--width", type=LENGTH, help="Width of the picture on paper: 4in, 100mm, 288 (points).")
+@click.option("--scale", type=POSITIVE, metavar="S", help="Size on paper relative to the natural one, instead of --width.")
+@click.option(
+    "--device-dpi",
+    type=DeviceDpi(),
+    default="600",
+    show_default=True,
+    metavar="N|none",
+    help="Resolution of the printer, which paints every dot that a stroke touches; none for plotters and screens.",
+)
+@click.option("--seed", type=click.IntRange(0, 2**62), default=0, show_default=True, metavar="N")
+@click.option(
+    "--layer",
+    "chosen",
+    metavar="NAME|N",
+    help="Write that layer only, by its name or its place from 1; the others are drawn, and their ink counted.",
+)
+@threads_option
+def render(
+    file: str | None,
+    output: str | None,
+    max_pixels: int,
+    quiet: bool,
+    width: float | None,
+    scale: float | None,
+    device_dpi: float | None,
+    seed: int,
+    chosen: str | None,
+    threads: int | None,
+) -> None:
+    """Draw an illustration anew for one size and one device.
+
+    FILE is an illustration, packed (*.penink) or loose. Every layer is enlarged, outlined and blasted.
+
+    \b
+    penink render keys.penink --width 24in --device-dpi 1200 | penink to-ps -o poster.eps
+    """
+    from penink_cli.drawing import joined, layer_strokes
+    from penink_cli.progress import progress
+
+    if width is not None and scale is not None:
+        raise click.UsageError("give one of --width and --scale")
+    illustration = read_illustration(file, max_pixels)
+    width_pt = width if width is not None else illustration.width * (scale or 1.0)
+    height_pt = width_pt * illustration.height / illustration.width
+    check_size(width_pt, height_pt)
+    which = range(len(illustration.layers)) if chosen is None else [_number(illustration, chosen)]
+    with progress(len(illustration.layers), "render", quiet) as advance:
+        layers = layer_strokes(
+            illustration, width_pt, device_dpi=device_dpi, seed=seed, threads=threads or processors(), advance=advance
+        )
+    drawn = joined([part for i in which for part in layers[i]], width_pt, height_pt)
+    name = illustration.layers[which[0]].name if len(which) == 1 else None
+    texture = illustration.layers[which[0]].texture.name if len(which) == 1 else None
+    with writing(output, binary=False) as out:
+        writer = strokes.Writer(out, width_pt, height_pt, name, texture, seed)
+        writer.add(drawn)
+
+
+def _number(illustration: Illustration, chosen: str) -> int:
+    """The place of the layer of that name, or of that number from 1."""
+    names = [layer.name for layer in illustration.layers]
+    if chosen in names:
+        return names.index(chosen)
+    if chosen.isascii() and chosen.isdigit() and 1 <= int(chosen[:9]) <= len(names):
+        return int(chosen) - 1
+    known = ", ".join(f"{i + 1} {printable(name, 60)}" if name else str(i + 1) for i, name in enumerate(names))
+    raise ParameterError(f"no layer {printable(chosen, 60)}; there are {known}")

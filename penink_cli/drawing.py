@@ -1,0 +1,109 @@
+"""The stages between an illustration, or a photograph, and its strokes: what `render`, `draw` and the filters share."""
+
+from __future__ import annotations
+
+import io
+import math
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from penink_cli.formats import strokes as strokes_format
+from penink_cli.model import EdgeList, Floats, GreyImage, Illustration, OutlineChoice, Strokes
+
+PIXELS_PER_PT = 2.0  # of the grey that is blasted: half the distance between the closest strokes
+LEAST_TONE = 1 / 255  # below it an overlay is paper
+
+Advance = Callable[[int], None]
+
+
+def grey_size(width_pt: float, aspect: float) -> tuple[int, int]:
+    """Width and height in pixels of the grey to blast for a picture of that width; aspect is height over width."""
+    width = max(2, math.floor(width_pt * PIXELS_PER_PT + 0.5))
+    return width, max(1, math.floor(width * aspect + 0.5))
+
+
+def enlarged(samples: GreyImage, edges: EdgeList | None, size: tuple[int, int], threads: int | None) -> GreyImage:
+    """Samples at the size that they are blasted at: half by the reconstruction, doubled by the separable filter."""
+    from penink_cli.reconstruction.enlarge import bands
+
+    rows = bands(samples, edges, *size, soften=True, maxval=255, threads=threads)
+    return GreyImage(np.concatenate(list(rows)).astype(np.uint8), 255)
+
+
+def outline_strokes(
+    edges: EdgeList, width_pt: float, height_pt: float, choice: OutlineChoice, ink: Strokes | None = None
+) -> Strokes:
+    """Outline strokes of the edges chosen; ink is on the sheet already, and not to be doubled."""
+    from penink_cli.blasting import outlines
+
+    around = None
+    if choice.regions:
+        from penink_cli.arrangement import triangulation
+
+        around = triangulation.edges_around(edges, np.array(choice.regions, np.float64))
+    return outlines.outline(edges, width_pt, height_pt, choice, around, ink)
+
+
+def as_written(strokes: Strokes) -> Strokes:
+    """The strokes as a strokes file holds them, to its decimals: what the next filter of a chain would read."""
+    out = io.BytesIO()
+    strokes_format.write(out, strokes)
+    out.seek(0)
+    return strokes_format.read(out, "")
+
+
+def joined(parts: Sequence[Strokes], width_pt: float, height_pt: float) -> Strokes:
+    """Several lists of strokes as one, in their order."""
+    if not parts:
+        return Strokes(width_pt, height_pt)
+    counts = np.concatenate([np.diff(part.first) for part in parts])
+    first = np.zeros(len(counts) + 1, np.int64)
+    np.cumsum(counts, out=first[1:])
+    points = np.concatenate([part.points for part in parts])
+    return Strokes(width_pt, height_pt, points, first, np.concatenate([part.widths for part in parts]))
+
+
+def layer_strokes(
+    illustration: Illustration,
+    width_pt: float,
+    *,
+    device_dpi: float | None = 600.0,
+    seed: int = 0,
+    threads: int | None = None,
+    advance: Advance = lambda done: None,
+) -> list[tuple[Strokes, Strokes]]:
+    """Hatching and outline strokes of each layer, bottom first, for a picture width_pt wide.
+
+    Outlines are ink first, those of all layers; then each layer is hatched up to the sum of its tone and of the layers
+    below, with their ink counted, wherever it has tone itself: so tones add up and no ink is there twice.
+    """
+    from penink_cli.blasting.blast import blast
+    from penink_cli.commands.blast import tone_curve
+
+    height_pt = width_pt * illustration.height / illustration.width
+    size = grey_size(width_pt, illustration.height / illustration.width)
+    outlines: list[Strokes] = []
+    for layer in illustration.layers:
+        drawn = Strokes(width_pt, height_pt)
+        if layer.outline is not None and layer.edges is not None:
+            before = joined(outlines, width_pt, height_pt)
+            drawn = as_written(outline_strokes(layer.edges, width_pt, height_pt, layer.outline, before))
+        outlines.append(drawn)
+    ink = joined(outlines, width_pt, height_pt)
+    total: Floats | None = None
+    result = []
+    for i, layer in enumerate(illustration.layers):
+        tone = tone_curve(enlarged(layer.samples, layer.edges, size, threads), layer.gamma)
+        total = tone if total is None else np.minimum(1.0, total + tone)
+        wanted = total if i == 0 else np.where(tone >= LEAST_TONE, total, 0.0)
+        hatched = blast(
+            wanted, width_pt, height_pt, layer.edges, layer.texture, seed=seed + layer.seed + i, pen_pt=layer.pen_pt,
+            device_dpi=device_dpi, rule=layer.rule, outlines=ink if len(ink) else None, threads=threads,
+        )  # fmt: skip
+        hatched = as_written(hatched)
+        ink = joined([ink, hatched], width_pt, height_pt)
+        result.append((hatched, outlines[i]))
+        advance(1)
+    return result
+
