@@ -9,7 +9,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from penink_cli.formats import strokes as strokes_format
-from penink_cli.model import EdgeList, Floats, GreyImage, Illustration, OutlineChoice, Strokes
+from penink_cli.model import EdgeList, Floats, GreyImage, Illustration, OutlineChoice, Strokes, Texture
 
 PIXELS_PER_PT = 2.0  # of the grey that is blasted: half the distance between the closest strokes
 LEAST_TONE = 1 / 255  # below it an overlay is paper
@@ -29,6 +29,47 @@ def enlarged(samples: GreyImage, edges: EdgeList | None, size: tuple[int, int], 
 
     rows = bands(samples, edges, *size, soften=True, maxval=255, threads=threads)
     return GreyImage(np.concatenate(list(rows)).astype(np.uint8), 255)
+
+
+def represented(photo: GreyImage, advance: Advance = lambda done: None) -> tuple[EdgeList, GreyImage]:
+    """A photograph's edges, and its samples on the smallest grid that serves, as the filters write them."""
+    from penink_cli.arrangement import detection
+    from penink_cli.formats import edge_list
+    from penink_cli.reconstruction import extraction, reduction
+
+    edges = edge_list.rounded(detection.detect_edges(photo.grey))
+    advance(1)
+    samples = GreyImage.from_grey(extraction.extract_samples(photo.grey, edges, None), 255)
+    advance(1)
+    rows, columns = photo.values.shape
+    factor = max(1.0, max(rows, columns) / 128)
+    reduced = reduction.reduce(samples.grey, edges, round(columns / factor), round(rows / factor))
+    advance(1)
+    return edges, GreyImage.from_grey(reduced, 255)
+
+
+def outlined(
+    edges: EdgeList, width_pt: float, height_pt: float, choice: OutlineChoice, ink: Strokes | None = None
+) -> Strokes:
+    """Outline strokes, as a strokes file holds them."""
+    return as_written(outline_strokes(edges, width_pt, height_pt, choice, ink))
+
+
+def blasted(
+    grey: GreyImage, width_pt: float, edges: EdgeList | None, texture: Texture, *, seed: int, pen_pt: float | None,
+    gamma: float, device_dpi: float | None, ink: Strokes | None, threads: int | None,
+) -> Strokes:  # fmt: skip
+    """The hatching of a grey image, as a strokes file holds it."""
+    from penink_cli.blasting.blast import blast
+    from penink_cli.commands.blast import tone_curve
+
+    rows, columns = grey.values.shape
+    return as_written(
+        blast(
+            tone_curve(grey, gamma), width_pt, width_pt * rows / columns, edges, texture, seed=seed, pen_pt=pen_pt,
+            device_dpi=device_dpi, outlines=ink, threads=threads,
+        )
+    )  # fmt: skip
 
 
 def outline_strokes(
@@ -53,15 +94,13 @@ def as_written(strokes: Strokes) -> Strokes:
     return strokes_format.read(out, "")
 
 
-def joined(parts: Sequence[Strokes], width_pt: float, height_pt: float) -> Strokes:
-    """Several lists of strokes as one, in their order."""
-    if not parts:
-        return Strokes(width_pt, height_pt)
+def joined(parts: Sequence[Strokes]) -> Strokes:
+    """Several lists of strokes as one, in their order, on the first one's sheet."""
     counts = np.concatenate([np.diff(part.first) for part in parts])
     first = np.zeros(len(counts) + 1, np.int64)
     np.cumsum(counts, out=first[1:])
     points = np.concatenate([part.points for part in parts])
-    return Strokes(width_pt, height_pt, points, first, np.concatenate([part.widths for part in parts]))
+    return Strokes(parts[0].width, parts[0].height, points, first, np.concatenate([part.widths for part in parts]))
 
 
 def layer_strokes(
@@ -87,10 +126,10 @@ def layer_strokes(
     for layer in illustration.layers:
         drawn = Strokes(width_pt, height_pt)
         if layer.outline is not None and layer.edges is not None:
-            before = joined(outlines, width_pt, height_pt)
-            drawn = as_written(outline_strokes(layer.edges, width_pt, height_pt, layer.outline, before))
+            before = joined(outlines) if outlines else None
+            drawn = outlined(layer.edges, width_pt, height_pt, layer.outline, before)
         outlines.append(drawn)
-    ink = joined(outlines, width_pt, height_pt)
+    ink = joined(outlines)
     total: Floats | None = None
     result = []
     for i, layer in enumerate(illustration.layers):
@@ -102,7 +141,7 @@ def layer_strokes(
             device_dpi=device_dpi, rule=layer.rule, outlines=ink if len(ink) else None, threads=threads,
         )  # fmt: skip
         hatched = as_written(hatched)
-        ink = joined([ink, hatched], width_pt, height_pt)
+        ink = joined([ink, hatched])
         result.append((hatched, outlines[i]))
         advance(1)
     return result

@@ -18,7 +18,8 @@ def trails(points: npt.NDArray[np.floating] | Ints, ends: Ints, least_cosine: fl
 
     points: (n, 2); ends: (m, 2). At a junction a trail goes on along the straightest edge left, and ends if the cosine
     of the bend would be under least_cosine. Trails start where an odd number of edges meet, then, for the
-    rings that remain, at their topmost vertex. The result depends on the places of vertices and edges alone, not on their numbers.
+    rings that remain, at their topmost vertex. The result depends
+    on the places of vertices and edges alone, not on their numbers.
     """
     rank = np.empty(len(points), np.int64)
     by_place = np.lexsort((points[:, 0], points[:, 1]))

@@ -10,11 +10,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
 
-from penink_cli.blasting import curves, curve_fitting
+from penink_cli.blasting import curve_fitting, curves
 from penink_cli.model import EdgeList, Floats, Ints, OutlineChoice, Strokes
 from penink_cli.trails import trails
 
@@ -35,7 +36,7 @@ WAVER_PT = 30.0  # over about that length
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """Part of a chain: vertices (n, 2) in pixels of the edge list, whether it closes on itself, and how telling it is."""
+    """Part of a chain: vertices (n, 2) in pixels of the edge list, whether it closes on itself, how telling it is."""
 
     vertices: Floats
     ring: bool
@@ -138,7 +139,8 @@ class Clearance:
         if open_.all():
             return [(slice(0, len(points)), ring)]
         steps = np.concatenate([[0.0], np.cumsum(np.sqrt(((points[1:] - points[:-1]) ** 2).sum(axis=1)))])
-        return [(slice(i, j), False) for i, j in _stretches(open_) if j - i > 1 and steps[j - 1] - steps[i] >= shortest_pt]
+        long_enough = [(i, j) for i, j in _stretches(open_) if j - i > 1 and steps[j - 1] - steps[i] >= shortest_pt]
+        return [(slice(i, j), False) for i, j in long_enough]
 
 
 def _dots(strokes: Strokes, step: float) -> Floats:
@@ -167,7 +169,7 @@ def _smooth(points: Floats, ring: bool, tolerance: float) -> Floats:
         points = np.concatenate([points[corners[0] : -1], points[: corners[0] + 1]])
         corners, ring = (corners - corners[0])[1:], False
     cuts = [0, *corners.tolist(), len(points) - 1]
-    pieces = [curve_fitting.fit(points[i : j + 1], tolerance, ring) for i, j in zip(cuts, cuts[1:]) if j > i]
+    pieces = [curve_fitting.fit(points[i : j + 1], tolerance, ring) for i, j in pairwise(cuts) if j > i]
     return np.concatenate([pieces[0], *(piece[1:] for piece in pieces[1:])])
 
 

@@ -10,8 +10,10 @@ import numpy as np
 from penink_cli.blasting.blast import RULES
 from penink_cli.blasting.blast import blast as blast_tone
 from penink_cli.commands.inputs import only_one_standard_input, read_edges, read_grey
+from penink_cli.drawing import joined
 from penink_cli.errors import ParameterError
 from penink_cli.formats import strokes as strokes_format
+from penink_cli.layer_options import read_layers
 from penink_cli.model import Floats, GreyImage
 from penink_cli.options import LENGTH, POSITIVE, Finite, edges_option, filter_options, processors, threads_option
 from penink_cli.streams import writing
@@ -53,6 +55,14 @@ class DeviceDpi(click.ParamType):
     show_default=True,
     help="best: true tone. strict: the paper's rule. threshold: each stroke where the tone exceeds its own.",
 )
+@click.option(
+    "--ink",
+    "ink_files",
+    type=click.Path(allow_dash=True),
+    multiple=True,
+    metavar="FILE",
+    help="Strokes that are on the paper already, such as outlines: counted, not written. May be repeated.",
+)
 @threads_option
 @filter_options
 def blast(
@@ -68,6 +78,7 @@ def blast(
     seed: int,
     device_dpi: float | None,
     rule: str,
+    ink_files: tuple[str, ...],
     threads: int | None,
     **_: Any,
 ) -> None:
@@ -81,7 +92,7 @@ def blast(
     """
     if (width is None) == (dpi is None):
         raise click.UsageError("give one of --width and --dpi")
-    only_one_standard_input(file, edges_file, texture_name if texture_name == "-" else None)
+    only_one_standard_input(file, edges_file, *ink_files, texture_name if texture_name == "-" else None)
     texture = find_texture(texture_name)
     edges = read_edges(edges_file)
     image = read_grey(file, max_pixels)
@@ -89,9 +100,10 @@ def blast(
     width_pt = width if width is not None else columns / (dpi or 1.0) * 72.0
     height_pt = width_pt * rows / columns
     check_size(width_pt, height_pt)
+    ink = read_layers(ink_files) if ink_files else []
     strokes = blast_tone(
         tone_curve(image, gamma), width_pt, height_pt, edges, texture, seed=seed, pen_pt=pen,
-        device_dpi=device_dpi, rule=rule, threads=threads or processors(),
+        device_dpi=device_dpi, rule=rule, outlines=joined(ink) if ink else None, threads=threads or processors(),
     )  # fmt: skip
     with writing(output, binary=False) as out:
         strokes_format.write(out, strokes)

@@ -53,8 +53,8 @@ def read_illustration(path: str | None, max_pixels: int) -> Illustration:
     Its samples have no more grey levels than their layer keeps, its edges lie on the grid that a packed illustration
     keeps them on and are a valid arrangement: loose or packed, it is the same.
     """
-    from penink_cli.arrangement import quantisation, validity
-    from penink_cli.formats import archive, compact, illustration
+    from penink_cli.arrangement import validity
+    from penink_cli.formats import archive, illustration
     from penink_cli.texture_options import find_texture
 
     source = streams.source_name(path)
@@ -82,18 +82,29 @@ def read_illustration(path: str | None, max_pixels: int) -> Illustration:
             return content
 
     found = illustration.read(text, source, fetch, find_texture, max_pixels)
-    layers = []
     for i, layer in enumerate(found.layers):
+        try:
+            if layer.edges is not None:
+                validity.check(layer.edges)
+        except PeninkError as error:
+            raise type(error)(f"layer {i}: edges: {error.message}", source) from None
+    return settled(found)
+
+
+def settled(illustration: Illustration) -> Illustration:
+    """The illustration at the precision it is kept at: samples at their levels, edges on the grid, rounded numbers."""
+    from penink_cli.arrangement.quantisation import quantise
+    from penink_cli.formats import compact
+    from penink_cli.formats.illustration import rounded
+
+    layers = []
+    for layer in illustration.layers:
         edges = layer.edges
         if edges is not None:
             rows, columns = layer.samples.values.shape
-            try:
-                validity.check(edges)
-            except PeninkError as error:
-                raise type(error)(f"layer {i}: edges: {error.message}", source) from None
-            edges = quantisation.quantise(edges, compact.GRID * columns, compact.GRID * rows)
+            edges = quantise(edges, compact.GRID * columns, compact.GRID * rows)
         layers.append(replace(layer, edges=edges))
-    return illustration.rounded(replace(found, layers=tuple(layers)))
+    return rounded(replace(illustration, layers=tuple(layers)))
 
 
 def fetch_manifest(members: dict[str, bytes], source: str) -> bytes:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import click
 
 from penink_cli.commands.blast import DeviceDpi, check_size
@@ -18,7 +16,7 @@ from penink_cli.streams import writing
 @click.command()
 @filter_options
 @click.option("--width", type=LENGTH, help="Width of the picture on paper: 4in, 100mm, 288 (points).")
-@click.option("--scale", type=POSITIVE, metavar="S", help="Size on paper relative to the natural one, instead of --width.")
+@click.option("--scale", type=POSITIVE, metavar="S", help="Size relative to the natural one, instead of --width.")
 @click.option(
     "--device-dpi",
     type=DeviceDpi(),
@@ -68,7 +66,7 @@ def render(
         layers = layer_strokes(
             illustration, width_pt, device_dpi=device_dpi, seed=seed, threads=threads or processors(), advance=advance
         )
-    drawn = joined([part for i in which for part in layers[i]], width_pt, height_pt)
+    drawn = joined([part for i in which for part in layers[i]])
     name = illustration.layers[which[0]].name if len(which) == 1 else None
     texture = illustration.layers[which[0]].texture.name if len(which) == 1 else None
     with writing(output, binary=False) as out:

@@ -1,0 +1,84 @@
+"""``penink separate``."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import click
+
+from penink_cli.commands.inputs import only_one_standard_input, read_edges, read_photo
+from penink_cli.commands.outline import Point
+from penink_cli.options import edges_option, filter_options
+from penink_cli.streams import writing
+
+
+class Range(click.ParamType):
+    """``LOW,HIGH``, two greys from 0 (black) to 1 (white)."""
+
+    name = "LOW,HIGH"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> tuple[float, float]:
+        """(low, high)."""
+        low, high = Point().convert(value, param, ctx)
+        if not 0 <= low < high <= 1:
+            self.fail(f"{value!r} is not a range of grey such as 0,0.5", param, ctx)
+        return low, high
+
+
+@click.command()
+@filter_options
+@click.option(
+    "--mask",
+    type=click.Path(allow_dash=True),
+    metavar="FILE",
+    help="A picture of the same size, white where the layer is.",
+)
+@click.option("--grey", type=Range(), help="Where the photo's grey is from LOW up to HIGH; 0 is black, 1 is white.")
+@click.option(
+    "--point",
+    "points",
+    type=Point(),
+    multiple=True,
+    help="The region of the edge list that holds this point, in pixels of the photo; may be repeated.",
+)
+@edges_option(required=False)
+@click.option("--invert", is_flag=True, help="All but that; the tones of the two overlays add up to the photo's.")
+def separate(
+    file: str | None,
+    output: str | None,
+    max_pixels: int,
+    mask: str | None,
+    grey: tuple[float, float] | None,
+    points: tuple[tuple[float, float], ...],
+    edges_file: str | None,
+    invert: bool,
+    **_: Any,
+) -> None:
+    """Make the overlay of one layer: the photo's grey where the layer is, paper white elsewhere.
+
+    What the layer is, is told by a mask, by a range of grey or by regions of an edge list. Overlays go
+    through the same filters as photos.
+
+    \b
+    penink separate keys.png --mask keys-mask.png -o keys.pgm
+    penink separate keys.png --mask keys-mask.png --invert -o shadow.pgm
+    """
+    from penink_cli import overlays
+    from penink_cli.formats import pgm
+
+    if (mask is not None) + (grey is not None) + bool(points) != 1:
+        raise click.UsageError("give one of --mask, --grey and --point")
+    if bool(points) != (edges_file is not None):
+        raise click.UsageError("--point and --edges go together")
+    only_one_standard_input(file, mask, edges_file)
+    photo = read_photo(file, max_pixels)
+    if mask is not None:
+        share = overlays.by_mask(photo, read_photo(mask, max_pixels))
+    elif grey is not None:
+        share = overlays.by_grey(photo, *grey)
+    else:
+        edges = read_edges(edges_file)
+        assert edges is not None
+        share = overlays.by_region(photo, edges, points)
+    with writing(output) as out:
+        pgm.write(out, overlays.overlay(photo, share, invert))
