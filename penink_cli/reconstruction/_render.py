@@ -123,7 +123,7 @@ def attenuate(desk: Desk, tile: Tile, ux: cython.pointer[real], uy: cython.point
     three: real = 3
     far: real = FAR
     veil: real[64]
-    row_size: cython.size_t = 8 * cython.sizeof(real)
+    row_size: cython.size_t = 8 * cython.sizeof(ux[0])
     length: real
     row: cython.Py_ssize_t
     hidden: cython.ulonglong
@@ -349,7 +349,7 @@ def blend(
         if low == 0:
             for k in range(n):
                 value[k] = top[k] / bottom[k]
-            memcpy(out, value, n * cython.sizeof(real))
+            memcpy(out, value, n * cython.sizeof(value[0]))
             return
     columns(kx, xb, tile.nx)
     add_up(desk, f, kx, yb, tile.ny, top_b, bottom_b)
@@ -367,7 +367,7 @@ def blend(
             w = t * t * (three - (t + t))
             value[k] = (w * top[k] + (one - w) * top_b[k]) / (w * bottom[k] + (one - w) * bottom_b[k])
     if low == 0:
-        memcpy(out, value, n * cython.sizeof(real))
+        memcpy(out, value, n * cython.sizeof(value[0]))
         return
     # Starved pixels: plain convolution, across the edges.
     for s in range(16):
@@ -551,7 +551,7 @@ def retouch(
                         for r in range(ny):
                             memcpy(
                                 cython.address(out[y_begin[a] + r, x_begin[b]]), rounded + 8 * r,
-                                8 * cython.sizeof(stored),
+                                8 * cython.sizeof(rounded[0]),
                             )  # fmt: skip
                     else:
                         for r in range(ny):
