@@ -5,7 +5,7 @@ from __future__ import annotations
 import click
 
 from penink_cli.commands.inputs import only_one_standard_input, read_edges, read_grey, read_photo
-from penink_cli.options import SIZE, edges_option, filter_options
+from penink_cli.options import SIZE, Finite, edges_option, filter_options, threads_option, verbose_option
 from penink_cli.streams import writing
 
 
@@ -14,16 +14,30 @@ from penink_cli.streams import writing
 @edges_option(required=False)
 @click.option("--factor", type=click.IntRange(1, 1000), metavar="N", help="Old samples a new one, along each axis.")
 @click.option("--size", type=SIZE, help="The new grid.")
+@click.option("--auto", is_flag=True, help="The smallest grid within --max-error, with a sample in every region.")
+@click.option(
+    "--max-error",
+    type=Finite(above=0, most=255),
+    metavar="E",
+    help="RMS difference from the photo, grey levels of 255.  [default: 8]",
+)
 @click.option(
     "--fit",
     type=click.Choice(["none", "lsq"]),
     default="lsq",
-    help="Least squares near edges, or none.  [default: lsq]",
+    show_default=True,
+    help="Fit the samples near edges by least squares, or take them as they are.",
 )
 @click.option(
-    "--photo", "photo_file", type=click.Path(), metavar="FILE", help="Fit to this photo, seen through its own blur."
+    "--photo",
+    "photo_file",
+    type=click.Path(allow_dash=True),
+    metavar="FILE",
+    help="Fit to, and measure the error against, this photo as its blurring camera saw it, not to the samples read.",
 )
-@click.option("--maxval", type=click.IntRange(1, 65535), help="White of the PGM written.  [default: that read]")
+@click.option("--maxval", type=click.IntRange(1, 65535), metavar="N", help="White of the PGM.  [default: as read]")
+@threads_option
+@verbose_option
 def reduce(
     file: str | None,
     output: str | None,
@@ -32,14 +46,18 @@ def reduce(
     edges_file: str | None,
     factor: int | None,
     size: tuple[int, int] | None,
+    auto: bool,
+    max_error: float | None,
     fit: str,
     photo_file: str | None,
     maxval: int | None,
+    threads: int | None,
+    verbose: bool,
 ) -> None:
     """Reduce samples to a coarser grid without mixing across edges.
 
     Each new sample speaks only for what it can reach. Near edges the samples are fitted so that their
-    enlargement, seen through a camera, comes as near as can be to the photo, or to the samples read.
+    enlargement, seen through a camera, comes as near as can be to the photo.
 
     \b
     penink extract-samples -e photo.edges.json photo.png \\
@@ -48,22 +66,38 @@ def reduce(
     from penink_cli.errors import ParameterError
     from penink_cli.formats import pgm
     from penink_cli.model import EdgeList, GreyImage
-    from penink_cli.reconstruction import reduction
+    from penink_cli.reconstruction import grid, reduction
 
-    if (factor is None) == (size is None):
-        raise click.UsageError("one of --factor and --size is needed")
-    only_one_standard_input(file, edges_file, *([photo_file] if photo_file else []))
+    if (factor is not None) + (size is not None) + auto != 1:
+        raise click.UsageError("one of --factor, --size and --auto is needed")
+    if max_error is not None and not auto:
+        raise click.UsageError("--max-error goes with --auto")
+    only_one_standard_input(file, edges_file, photo_file or "")
     edges = read_edges(edges_file)
     samples = read_grey(file, max_pixels)
-    height, width = samples.values.shape
-    if size is None:
-        assert factor is not None
-        size = max(1, round(width / factor)), max(1, round(height / factor))
-    if size[0] > width or size[1] > height:
-        raise ParameterError(f"{width} x {height} samples cannot be reduced to {size[0]} x {size[1]}")
     photo = read_photo(photo_file, max_pixels).grey if photo_file else None
-    if photo is not None and (photo.shape[0] < size[1] or photo.shape[1] < size[0]):
-        raise ParameterError(f"the photo has fewer pixels than {size[0]} x {size[1]}")
-    reduced = reduction.reduce(samples.grey, edges or EdgeList(width, height), *size, photo=photo, fit=fit)
+    height, width = samples.values.shape
+    edges = edges or EdgeList(width, height)
+    if factor is not None:
+        size = max(1, round(width / factor)), max(1, round(height / factor))
+    if size is not None and (size[0] > width or size[1] > height):
+        raise ParameterError(f"{width} x {height} samples cannot be reduced to {size[0]} x {size[1]}")
+    least = size or (width, height)
+    if photo is not None and (photo.shape[1] < least[0] or photo.shape[0] < least[1]):
+        raise ParameterError(
+            f"the photo has {photo.shape[1]} x {photo.shape[0]} pixels, fewer than {least[0]} x {least[1]} samples"
+        )
+
+    def say(line: str) -> None:
+        if verbose:
+            click.echo(line, err=True)
+
+    if size is None:
+        limit = grid.MAX_ERROR if max_error is None else max_error / 255
+        chosen = grid.choose_grid(samples.grey, edges, limit, photo=photo, fit=fit, threads=threads, report=say)
+        reduced = chosen.samples
+        say(f"chosen: {reduced.shape[1]} x {reduced.shape[0]}, error {255 * chosen.error:.2f} of 255")
+    else:
+        reduced = reduction.reduce(samples.grey, edges, *size, photo=photo, fit=fit, threads=threads)
     with writing(output) as out:
         pgm.write(out, GreyImage.from_grey(reduced, maxval or samples.maxval))

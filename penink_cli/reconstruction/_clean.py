@@ -212,11 +212,13 @@ def _plane(
     y: cython.double,
     spread: cython.double,
     stiffness: cython.double,
+    table: cython.double[::1],
     out: cython.p_double,
 ) -> cython.bint:
     """Value at (x, y), in pixel centres, of the plane fitted to the clean pixels of the queue.
 
-    Weights fall as a Gaussian of `spread` pixels; `stiffness` holds the slope back, the more
+    Weights fall as a Gaussian of `spread` pixels, tabulated by the square of the distance where (x, y)
+    is a pixel's centre (table not empty); `stiffness` holds the slope back, the more
     the farther the pixels lie to one side. False where no pixel is clean.
     """
     k: cython.int
@@ -238,13 +240,15 @@ def _plane(
     det: cython.double
     bx: cython.double
     by: cython.double
+    tabulated: cython.bint = table.shape[0] > 0
     for k in range(count):
         if distance[queue[k, 0], queue[k, 1]] <= margin:
             continue
         dx = queue[k, 1] - x
         dy = queue[k, 0] - y
         v = values[queue[k, 0], queue[k, 1]]
-        w = exp(-(dx * dx + dy * dy) / (2 * spread * spread))
+        w = dx * dx + dy * dy
+        w = table[cython.cast(cython.int, w)] if tabulated else exp(-w / (2 * spread * spread))
         s += w
         sx += w * dx
         sy += w * dy
@@ -285,6 +289,7 @@ def extrapolate(
     steps: cython.int,
     spread: cython.double,
     stiffness: cython.double,
+    table: cython.double[::1],
     seen: cython.int[::1],
     queue: cython.int[:, ::1],
     out: cython.float[:, ::1],
@@ -294,6 +299,7 @@ def extrapolate(
     A plane is fitted to the clean pixels within `steps`; where there are none, up to MAX_REACH
     away; and where the region has none at all, the mean of its least contaminated pixels.
 
+    table: weights by the square of the distance, up to 2 · MAX_REACH².
     seen: ((2 · MAX_REACH + 1)²,) zeros; queue: (that many + 9, 2); room to work in. out: (h, w) filled in these rows.
     """
     i: cython.Py_ssize_t
@@ -324,7 +330,7 @@ def extrapolate(
                     queue[0, 1] = j
                     count = _walk(walls, reach, i, j, seen, stamp, queue, 1)
                     done = _plane(
-                        values, distance, margin, queue, count, j, i, spread, stiffness, cython.address(value)
+                        values, distance, margin, queue, count, j, i, spread, stiffness, table, cython.address(value)
                     )
                     if not done and reach == 24:
                         break
@@ -453,6 +459,7 @@ def resample(
     steps: cython.int,
     spread: cython.double,
     stiffness: cython.double,
+    table: cython.double[::1],
     near: cython.float[:, ::1],
     seen: cython.int[::1],
     queue: cython.int[:, ::1],
@@ -518,10 +525,63 @@ def resample(
                             count += 1
                 if count:
                     count = _walk(walls, steps, pi, pj, seen, stamp, queue, count)
-                    _plane(none, none, -1.0, queue, count, x - 0.5, y - 0.5, spread, stiffness, cython.address(value))
+                    _plane(
+                        none,
+                        none,
+                        -1.0,
+                        queue,
+                        count,
+                        x - 0.5,
+                        y - 0.5,
+                        spread,
+                        stiffness,
+                        table,
+                        cython.address(value),
+                    )
                     out[i, j] = value
                 else:
                     out[i, j] = values[
                         min(height - 1, cython.cast(cython.Py_ssize_t, y)),
                         min(width - 1, cython.cast(cython.Py_ssize_t, x)),
                     ]
+
+
+@cython.cfunc
+@cython.inline
+@cython.nogil
+@cython.exceptval(check=False)
+def _root(parent: cython.int[::1], k: cython.int) -> cython.int:
+    while parent[k] != k:
+        parent[k] = parent[parent[k]]
+        k = parent[k]
+    return k
+
+
+def regions(walls: cython.uchar[:, ::1], parent: cython.int[::1]) -> None:
+    """Join pixel centres between which a step crosses no edge; afterwards parent[k] is the region's first pixel.
+
+    walls: (h, w) as of `block`. parent: (h · w,) filled.
+    """
+    height: cython.int = walls.shape[0]
+    width: cython.int = walls.shape[1]
+    i: cython.int
+    j: cython.int
+    k: cython.int
+    a: cython.int
+    b: cython.int
+    with cython.nogil:
+        for k in range(height * width):
+            parent[k] = k
+        for i in range(height):
+            for j in range(width):
+                k = i * width + j
+                if j + 1 < width and not walls[i, j] & 1:
+                    a = _root(parent, k)
+                    b = _root(parent, k + 1)
+                    parent[max(a, b)] = min(a, b)
+                if i + 1 < height and not walls[i, j] & 2:
+                    a = _root(parent, k)
+                    b = _root(parent, k + width)
+                    parent[max(a, b)] = min(a, b)
+        for k in range(height * width):
+            parent[k] = parent[parent[k]]

@@ -9,7 +9,6 @@ COMPILED = cython.compiled
 
 T1 = cython.declare(cython.double, 0.5)  # below this sum of cubic weights the B-spline is blended in
 T2 = cython.declare(cython.double, 1e-4)  # below this sum of B-spline weights plain convolution is faded in
-SPAN = cython.declare(cython.int, 5)  # samples, along each axis, that a pixel no wider than a cell depends on
 
 
 @cython.cfunc
@@ -123,6 +122,66 @@ def _weigh(
             out[4 * a + b] = norm * alpha[64 * (4 * a + b) + k] * w + fade * (yc[a] * xc[b])
 
 
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def _weigh_tile(
+    alpha: cython.p_double,
+    nx: cython.int,
+    ny: cython.int,
+    xc: cython.double[:, ::1],
+    xb: cython.double[:, ::1],
+    yc: cython.double[:, ::1],
+    yb: cython.double[:, ::1],
+    x: cython.int,
+    y: cython.int,
+    out: cython.p_double,
+) -> cython.void:
+    """What equation 5's weights of the 16 samples (outer) differ from plain convolution's at each point (inner) of a tile.
+
+    x, y: the tile's first point along each axis. out: (16, 64).
+    """
+    a: cython.int
+    b: cython.int
+    r: cython.int
+    c: cython.int
+    k: cython.int
+    s: cython.int
+    v: cython.double
+    across = cython.declare(cython.double[32])
+    total = cython.declare(cython.double[64])
+    one = cython.declare(cython.double[16])
+    for k in range(64):
+        total[k] = 0.0
+    for c in range(8):
+        for b in range(4):
+            across[8 * b + c] = xc[x + min(c, nx - 1), b]
+    for s in range(16):
+        for r in range(ny):
+            v = yc[y + r, s >> 2]
+            for c in range(8):
+                total[8 * r + c] += alpha[64 * s + 8 * r + c] * (v * across[8 * (s & 3) + c])
+    for k in range(8 * ny):
+        total[k] = 1.0 / total[k] if total[k] >= T1 else 0.0  # 0: the blend of both kernels, below
+    for s in range(16):
+        for r in range(ny):
+            v = yc[y + r, s >> 2]
+            for c in range(8):
+                k = 8 * r + c
+                out[64 * s + k] = v * across[8 * (s & 3) + c] * (alpha[64 * s + k] * total[k] - 1.0)
+    for r in range(ny):
+        for c in range(nx):
+            k = 8 * r + c
+            if total[k] == 0.0:
+                _weigh(
+                    alpha, k, cython.address(xc[x + c, 0]), cython.address(xb[x + c, 0]),
+                    cython.address(yc[y + r, 0]), cython.address(yb[y + r, 0]), one,
+                )  # fmt: skip
+                for a in range(4):
+                    for b in range(4):
+                        out[64 * (4 * a + b) + k] = one[4 * a + b] - yc[y + r, a] * xc[x + c, b]
+
+
 def rows(
     tile: Tile,
     x: cython.double[::1],
@@ -140,6 +199,8 @@ def rows(
     fine: cython.int,
     x_base: cython.int[::1],
     y_base: cython.int[::1],
+    x_plain: cython.float[:, ::1],
+    y_plain: cython.float[:, ::1],
     radius: cython.double,
     weight: cython.float[:, :, ::1],
 ) -> cython.bint:
@@ -147,7 +208,8 @@ def rows(
 
     x …, y …: of all points along each axis, as in lattice.Axis. tiles: (4,) first and last + 1 tile down and
     across. pixels: (2,) row and column of the block's first pixel. x_base, y_base: first sample that each
-    pixel of an axis depends on. weight: (rows, columns, 25) filled: 5 × 5 samples from the base on.
+    pixel of an axis depends on; x_plain, y_plain: (n, 5) weights of plain convolution from there on.
+    weight: (rows, columns, 25) filled: 5 × 5 samples from the bases on.
     """
     a: cython.int
     b: cython.int
@@ -155,6 +217,7 @@ def rows(
     c: cython.int
     i: cython.int
     j: cython.int
+    k: cython.int
     s: cython.int
     nx: cython.int
     ny: cython.int
@@ -162,49 +225,54 @@ def rows(
     px: cython.int
     at_x: cython.int
     at_y: cython.int
-    seen: cython.bint
+    v: cython.float
+    w: cython.p_float
     matters: cython.bint = False
     share: cython.double = 1.0 / (fine * fine)
     last_x: cython.int = tile.scene.width - 1
     last_y: cython.int = tile.scene.height - 1
     alpha = cython.declare(cython.double[1024])
-    w = cython.declare(cython.double[16])
+    change = cython.declare(cython.double[1024])
+    place_x = cython.declare(cython.int[4])
+    place_y = cython.declare(cython.int[4])
     with cython.nogil:
-        weight[:, :, :] = 0
+        for py in range(weight.shape[0]):
+            for px in range(weight.shape[1]):
+                w = cython.address(weight[py, px, 0])
+                for i in range(5):
+                    v = y_plain[pixels[0] + py, i]
+                    for j in range(5):
+                        w[5 * i + j] = v * x_plain[pixels[1] + px, j]
         for a in range(tiles[0], tiles[1]):
             at_y = y_begin[a]
             ny = y_begin[a + 1] - at_y
             for b in range(tiles[2], tiles[3]):
+                if tile.scene.clear(x_cell[b] - 1, y_cell[a] - 1, x_cell[b] + 1, y_cell[a] + 1):
+                    continue
                 at_x = x_begin[b]
                 nx = x_begin[b + 1] - at_x
-                seen = False
-                if not tile.scene.clear(x_cell[b] - 1, y_cell[a] - 1, x_cell[b] + 1, y_cell[a] + 1):
-                    tile.place(x_cell[b], y_cell[a], cython.address(x[at_x]), nx, cython.address(y[at_y]), ny)
-                    seen = tile.see()
-                    if seen:
-                        matters = True
-                        _attenuate(tile, radius, alpha)
+                tile.place(x_cell[b], y_cell[a], cython.address(x[at_x]), nx, cython.address(y[at_y]), ny)
+                if not tile.see():
+                    continue
+                matters = True
+                _attenuate(tile, radius, alpha)
+                _weigh_tile(alpha, nx, ny, xc, xb, yc, yb, at_x, at_y, change)
                 for r in range(ny):
                     py = (at_y + r) // fine - pixels[0]
                     if py < 0 or py >= weight.shape[0]:
                         continue
+                    for i in range(4):
+                        place_y[i] = min(last_y, max(0, y_cell[a] - 1 + i)) - y_base[pixels[0] + py]
                     for c in range(nx):
                         px = (at_x + c) // fine - pixels[1]
                         if px < 0 or px >= weight.shape[1]:
                             continue
-                        if seen:
-                            _weigh(
-                                alpha, 8 * r + c,
-                                cython.address(xc[at_x + c, 0]), cython.address(xb[at_x + c, 0]),
-                                cython.address(yc[at_y + r, 0]), cython.address(yb[at_y + r, 0]), w,
-                            )  # fmt: skip
-                        else:
-                            for s in range(16):
-                                w[s] = yc[at_y + r, s >> 2] * xc[at_x + c, s & 3]
+                        for j in range(4):
+                            place_x[j] = min(last_x, max(0, x_cell[b] - 1 + j)) - x_base[pixels[1] + px]
+                        k = 8 * r + c
+                        w = cython.address(weight[py, px, 0])
                         for s in range(16):
-                            i = min(last_y, max(0, y_cell[a] - 1 + (s >> 2))) - y_base[pixels[0] + py]
-                            j = min(last_x, max(0, x_cell[b] - 1 + (s & 3))) - x_base[pixels[1] + px]
-                            weight[py, px, SPAN * i + j] += share * w[s]
+                            w[5 * place_y[s >> 2] + place_x[s & 3]] += share * change[64 * s + k]
     return matters
 
 

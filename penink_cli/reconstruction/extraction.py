@@ -50,20 +50,32 @@ def extract_samples(
     if not len(edges.edges):
         return values
     margin = contamination(camera_blur(values, edges)) if margin is None else margin
-    lines = segments(edges, width, height)
     walls = np.zeros((height, width), np.uint8)
-    _clean.block(*lines, walls)
-    distance = np.full((height, width), np.inf, np.float32)
-    _clean.near(*lines, margin, distance)
+    _clean.block(*segments(edges, width, height), walls)
+    distance = _distance(edges, width, height, margin)
     out = np.empty_like(values)
     steps = int(np.ceil(margin)) + 3
+    table = np.exp(-np.arange(2 * 24 * 24 + 1) / (2 * _SPREAD * _SPREAD))
 
     def rows(band: tuple[int, int]) -> None:
         seen, queue = np.zeros(_WINDOW**2, np.int32), np.zeros((_WINDOW**2 + 9, 2), np.int32)
-        _clean.extrapolate(values, walls, distance, margin, *band, steps, _SPREAD, _STIFFNESS, seen, queue, out)
+        _clean.extrapolate(values, walls, distance, margin, *band, steps, _SPREAD, _STIFFNESS, table, seen, queue, out)
 
     in_bands(rows, height)
     return np.clip(out, 0, 1, out=out)
+
+
+def contaminated(grey: npt.NDArray[np.floating], edges: EdgeList, margin: float | None = None) -> npt.NDArray[np.bool_]:
+    """Which pixels (h, w) `extract_samples` replaces."""
+    margin = contamination(camera_blur(grey, edges)) if margin is None else margin
+    return _distance(edges, grey.shape[1], grey.shape[0], margin) <= margin
+
+
+def _distance(edges: EdgeList, width: int, height: int, margin: float) -> npt.NDArray[np.float32]:
+    """Distance (h, w) from each pixel's centre to the nearest edge, infinite beyond margin."""
+    distance = np.full((height, width), np.inf, np.float32)
+    _clean.near(*segments(edges, width, height), margin, distance)
+    return distance
 
 
 def contamination(blur: float) -> float:

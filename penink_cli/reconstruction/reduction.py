@@ -83,7 +83,7 @@ def _take_near_edges(values: npt.NDArray[np.float32], edges: EdgeList, out: Floa
         seen, queue = np.zeros(_WINDOW**2, np.int32), np.zeros((_WINDOW**2 + 9, 2), np.int32)
         _clean.resample(
             values, walls, *lines, _CELL, first, items, *band, min(23, round(factor)), 0.4 * min(23, factor),
-            (0.3 * min(23, factor)) ** 2, near, seen, queue, out,
+            (0.3 * min(23, factor)) ** 2, np.zeros(0), near, seen, queue, out,
         )  # fmt: skip
 
     in_bands(rows, height, 16)

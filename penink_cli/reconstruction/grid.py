@@ -1,0 +1,142 @@
+"""The smallest grid that still serves: the paper's open question of the appropriate reduction factor.
+
+A grid serves if its samples, reconstructed and seen through the camera, differ from the photo by no
+more than a given error, and if every region that edges enclose holds a sample. The error falls as
+the grid grows, which halving the interval exploits; regions do not behave so, and are tried in turn.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from penink_cli.errors import ParameterError
+from penink_cli.model import EdgeList
+from penink_cli.reconstruction import _clean
+from penink_cli.reconstruction.camera import camera_blur
+from penink_cli.reconstruction.enlarge import reconstruct
+from penink_cli.reconstruction.extraction import segments
+from penink_cli.reconstruction.fit import AREA, POINT
+from penink_cli.reconstruction.reduction import reduce
+
+Grey32 = npt.NDArray[np.float32]
+
+MAX_ERROR = 8 / 255
+LEAST_REGION_PX = 16  # pixels of the photo; smaller ones are specks that no stroke can show
+_LEAST_SIDE = 32  # samples; below that a cell holds too much of the picture
+_FINER = 1.03  # ratio of neighbouring grids that are tried
+
+
+@dataclass(frozen=True, eq=False)
+class Grid:
+    """A grid: its samples (height, width), the error they leave (RMS, 0 … 1), regions without a sample."""
+
+    samples: Grey32
+    error: float
+    empty_regions: int
+
+
+def choose_grid(
+    samples: Grey32,
+    edges: EdgeList,
+    max_error: float = MAX_ERROR,
+    *,
+    photo: Grey32 | None = None,
+    fit: str = "lsq",
+    threads: int | None = None,
+    report: Callable[[str], None] = lambda line: None,
+) -> Grid:
+    """Reduce samples to the smallest grid whose reconstruction stays within max_error of the photo.
+
+    Args:
+        samples: (h, w) clean samples, 0 … 1.
+        edges: in the frame of the image.
+        max_error: RMS, grey 0 … 1.
+        photo: what to compare with (and to fit to); the samples where None.
+        fit: as of `reduce`.
+        threads: the bytes are the same for any number.
+        report: receives a line about each grid tried.
+
+    Raises:
+        ParameterError: where even the grid of the samples leaves a larger error.
+
+    """
+    height, width = samples.shape
+    seen = samples if photo is None else photo
+    blur = 0.0 if photo is None else camera_blur(seen, edges)
+    regions = _Regions(edges, *seen.shape)
+    tried: dict[tuple[int, int], Grid] = {}
+
+    def attempt(factor: float) -> Grid:
+        size = _size(width, height, factor)
+        if size not in tried:
+            reduced = reduce(samples, edges, *size, photo=photo, fit=fit, blur=blur, threads=threads)
+            error = remaining_error(reduced, edges, seen, blur, AREA if photo is not None else POINT, threads)
+            tried[size] = Grid(reduced, error, regions.without_sample(*size))
+            report(
+                f"{size[0]} x {size[1]}: error {255 * error:.2f} of 255, "
+                f"{tried[size].empty_regions} regions without a sample"
+            )
+        return tried[size]
+
+    fine, coarse = 1.0, max(1.0, min(width, height) / _LEAST_SIDE)
+    while coarse / fine > _FINER and _size(width, height, fine) != _size(width, height, coarse):
+        middle = (fine * coarse) ** 0.5
+        if attempt(middle).error <= max_error:
+            fine = middle
+        else:
+            coarse = middle
+    while fine > 1 and regions.without_sample(*_size(width, height, fine)):
+        fine = max(1.0, fine / _FINER)
+    chosen = attempt(fine)
+    if chosen.error > max_error:
+        raise ParameterError(f"even {width} x {height} samples leave an error of {255 * chosen.error:.2f} of 255")
+    return chosen
+
+
+def remaining_error(
+    samples: Grey32, edges: EdgeList, photo: Grey32, blur: float, fine: int = AREA, threads: int | None = None
+) -> float:
+    """RMS difference (0 … 1) between a photo and the reconstruction of samples, seen through the camera."""
+    from scipy.ndimage import gaussian_filter
+
+    height, width = photo.shape
+    halo = int(4 * blur + 1)
+    rows = max(64, 4_000_000 // width)
+    total = 0.0
+    for top in range(0, height, rows):
+        first, last = max(0, top - halo), min(height, top + rows + halo)
+        window = 0, fine * first, fine * width, fine * (last - first)
+        grey = reconstruct(samples, edges, fine * width, fine * height, window=window, threads=threads)
+        grey = np.clip(grey, 0, 1, out=grey).reshape(last - first, fine, width, fine).mean(axis=(1, 3))
+        if blur:
+            grey = gaussian_filter(grey, blur, mode="nearest")
+        bottom = min(height, top + rows)
+        total += float(np.square(grey[top - first : bottom - first] - photo[top:bottom]).sum())
+    return float(np.sqrt(total / photo.size))
+
+
+def _size(width: int, height: int, factor: float) -> tuple[int, int]:
+    return max(1, round(width / factor)), max(1, round(height / factor))
+
+
+class _Regions:
+    """The regions that edges enclose, as far as pixels of the photo tell."""
+
+    def __init__(self, edges: EdgeList, height: int, width: int) -> None:
+        walls = np.zeros((height, width), np.uint8)
+        _clean.block(*segments(edges, width, height), walls)
+        parent = np.zeros(height * width, np.int32)
+        _clean.regions(walls, parent)
+        self.region = parent.reshape(height, width)
+        self.wanted = np.flatnonzero(np.bincount(parent) >= LEAST_REGION_PX)
+
+    def without_sample(self, width: int, height: int) -> int:
+        """How many regions hold no sample of a grid of width × height."""
+        rows = ((np.arange(height) + 0.5) * self.region.shape[0] / height).astype(int)
+        columns = ((np.arange(width) + 0.5) * self.region.shape[1] / width).astype(int)
+        held = np.unique(self.region[np.ix_(rows, columns)])
+        return len(np.setdiff1d(self.wanted, held, assume_unique=True))

@@ -1,0 +1,41 @@
+"""The smallest grid that serves."""
+
+import numpy as np
+import pytest
+
+from penink_cli.errors import ParameterError
+from penink_cli.model import EdgeList
+from penink_cli.reconstruction.grid import choose_grid
+
+
+def picture(size=96):
+    y, x = (np.mgrid[:size, :size] + 0.5) / size
+    return (0.5 + 0.3 * np.sin(9 * x) * np.cos(7 * y)).astype(np.float32)
+
+
+def test_a_smaller_error_takes_a_finer_grid():
+    grey = picture()
+    sizes = [choose_grid(grey, EdgeList(96, 96), error / 255).samples.shape[0] for error in (0.05, 0.2)]
+    assert 96 > sizes[0] > sizes[1] >= 32
+
+
+def test_the_error_is_kept_and_reported():
+    lines = []
+    chosen = choose_grid(picture(), EdgeList(96, 96), 0.1 / 255, report=lines.append)
+    assert chosen.error <= 0.1 / 255 and len(lines) > 2
+
+
+def test_every_region_gets_a_sample():
+    square = np.array([[40.5, 40.5], [44.8, 40.5], [44.8, 44.8], [40.5, 44.8]])
+    edges = EdgeList(96, 96, square, np.array([[0, 1], [1, 2], [2, 3], [3, 0]]))
+    chosen = choose_grid(np.full((96, 96), 0.5, np.float32), edges, 0.1)
+    height, width = chosen.samples.shape
+    x, y = (np.arange(width) + 0.5) * 96 / width, (np.arange(height) + 0.5) * 96 / height
+    inside = ((x > 40.5) & (x < 44.8)).any() and ((y > 40.5) & (y < 44.8)).any()
+    assert inside and chosen.empty_regions == 0
+
+
+def test_what_cannot_be_kept_is_an_error():
+    noise = np.random.default_rng(1).random((40, 40)).astype(np.float32)
+    with pytest.raises(ParameterError, match="even 40 x 40"):
+        choose_grid(np.zeros((40, 40), np.float32), EdgeList(40, 40), 1e-4, photo=noise)
