@@ -13,6 +13,12 @@ cdef class Scene:
     cdef int gw, gh
     cdef int* cell_start
     cdef int* cell_edge
+    cdef int n_crowded
+    cdef int* crowded
+    cdef int* fine_start
+    cdef int* fine_edge
+    cdef int* star_start
+    cdef int* star
     cdef int* node_vertex
     cdef int* node_low
     cdef int* node_high
@@ -26,6 +32,8 @@ cdef class Scene:
     cdef bint sees(self, double px, double py, double qx, double qy) noexcept nogil
     cdef bint sees_vertex(self, double qx, double qy, int v) noexcept nogil
     cdef bint joined(self, int u, int v) noexcept nogil
+    cdef bint obstructed(self, double px, double py, double qx, double qy, int u, int v) noexcept nogil
+    cdef bint meets(self, int e, double px, double py, double qx, double qy, int u, int v) noexcept nogil
     cdef bint bends_for(self, int node, double qx, double qy) noexcept nogil
     cdef bint clear(self, double x0, double y0, double x1, double y1) noexcept nogil
 

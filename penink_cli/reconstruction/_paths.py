@@ -20,6 +20,8 @@ COMPILED = cython.compiled
 
 PAD = cython.declare(cython.double, 1e-7)  # cells are closed, and this much wider than that: rounding is far below it
 INFINITY = cython.declare(cython.double, float("inf"))
+CROWD = cython.declare(cython.int, 48)  # edges in one cell from which on it gets a grid of its own
+FINE = cython.declare(cython.int, 32)  # cells of that grid along a side
 
 
 @cython.cfunc
@@ -123,10 +125,22 @@ class Scene:
         entries = np.empty(max(1, bucket(self)), np.intc)
         self.cell_edge = ints(entries)
         fill_buckets(self)
+        crowds = np.full(self.gw * self.gh, -1, np.intc)
+        self.crowded = ints(crowds)
+        count_crowds(self)
+        fine_start = np.zeros(self.n_crowded * FINE * FINE + 1, np.intc)
+        self.fine_start = ints(fine_start)
+        fine_entries = np.empty(max(1, refine(self, False)), np.intc)
+        self.fine_edge = ints(fine_entries)
+        refine(self, True)
         nodes = np.empty((3, 2 * self.n_vertices), np.intc)
         self.node_vertex = ints(nodes[0])
         self.node_low = ints(nodes[1])
         self.node_high = ints(nodes[2])
+        star_start = np.zeros(self.n_vertices + 1, np.intc)
+        star = np.empty(2 * self.n_edges, np.intc)
+        self.star_start = ints(star_start)
+        self.star = ints(star)
         find_nodes(self)
         node_start = np.zeros(self.gw * self.gh + 1, np.intc)
         node_cell = np.empty(max(1, self.n_nodes), np.intc)
@@ -135,7 +149,8 @@ class Scene:
         bucket_nodes(self)
         arc_start = np.zeros(self.n_nodes + 1, np.intc)
         self.arc_start = ints(arc_start)
-        self.arrays += [start, entries, nodes, node_start, node_cell, arc_start]
+        self.arrays += [start, entries, crowds, fine_start, fine_entries, nodes, star_start, star]
+        self.arrays += [node_start, node_cell, arc_start]
         with cython.nogil:
             find_arcs(self)
 
@@ -177,113 +192,127 @@ class Scene:
     @cython.exceptval(check=False)
     def sees(self, px: cython.double, py: cython.double, qx: cython.double, qy: cython.double) -> cython.bint:
         """Whether two queries see each other."""
-        row: cython.int
-        left: cython.double = 0.0
-        right: cython.double = 0.0
-        k: cython.int
-        a: cython.int
-        b: cython.int
-        e: cython.int
-        y0: cython.double = py if py < qy else qy
-        y1: cython.double = qy if py < qy else py
         if px == qx and py == qy:
             return True
-        for row in range(self.row_of(y0), self.row_of(y1) + 1):
-            span(px, py, qx, qy, row - 1, cython.address(left), cython.address(right))
-            for k in range(
-                self.cell_start[row * self.gw + self.column_of(left)],
-                self.cell_start[row * self.gw + self.column_of(right) + 1],
-            ):
-                e = self.cell_edge[k]
-                a = self.ea[e]
-                b = self.eb[e]
-                if side_of_vertex(px, py, qx, qy, self.vx[a], self.vy[a]) != side_of_vertex(
-                    px, py, qx, qy, self.vx[b], self.vy[b]
-                ) and side_of_query(self.vx[a], self.vy[a], self.vx[b], self.vy[b], px, py) != side_of_query(
-                    self.vx[a], self.vy[a], self.vx[b], self.vy[b], qx, qy
-                ):
-                    return False
-        return True
+        return not self.obstructed(px, py, qx, qy, -1, -1)
 
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)
     def sees_vertex(self, qx: cython.double, qy: cython.double, v: cython.int) -> cython.bint:
         """Whether no edge lies between a query and a vertex; the edges at the vertex are `bends_for`'s concern."""
-        row: cython.int
-        left: cython.double = 0.0
-        right: cython.double = 0.0
-        k: cython.int
-        a: cython.int
-        b: cython.int
-        e: cython.int
-        s: cython.int
-        x: cython.double = self.vx[v]
-        y: cython.double = self.vy[v]
-        y0: cython.double = y if y < qy else qy
-        y1: cython.double = qy if y < qy else y
-        for row in range(self.row_of(y0), self.row_of(y1) + 1):
-            span(qx, qy, x, y, row - 1, cython.address(left), cython.address(right))
-            for k in range(
-                self.cell_start[row * self.gw + self.column_of(left)],
-                self.cell_start[row * self.gw + self.column_of(right) + 1],
-            ):
-                e = self.cell_edge[k]
-                a = self.ea[e]
-                b = self.eb[e]
-                if a == v or b == v:
-                    continue
-                if side_of_query(x, y, self.vx[a], self.vy[a], qx, qy) != side_of_query(
-                    x, y, self.vx[b], self.vy[b], qx, qy
-                ):
-                    s = orient(self.vx[a], self.vy[a], self.vx[b], self.vy[b], x, y)
-                    if s != 0 and s != side_of_query(self.vx[a], self.vy[a], self.vx[b], self.vy[b], qx, qy):
-                        return False
-        return True
+        return not self.obstructed(qx, qy, self.vx[v], self.vy[v], -1, v)
 
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)
     def joined(self, u: cython.int, v: cython.int) -> cython.bint:
         """Whether the open segment between two vertices that share no edge meets neither edge nor vertex."""
+        return not self.obstructed(self.vx[u], self.vy[u], self.vx[v], self.vy[v], u, v)
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def obstructed(
+        self,
+        px: cython.double,
+        py: cython.double,
+        qx: cython.double,
+        qy: cython.double,
+        u: cython.int,
+        v: cython.int,
+    ) -> cython.bint:
+        """Whether an edge meets the segment from p to q, which are the vertices u and v, or queries where those are −1.
+
+        Walks the cells that the segment touches, in a crowded cell those of its own finer grid.
+        """
         row: cython.int
+        column: cython.int
+        k: cython.int
+        fine: cython.int
+        n: cython.int
+        c0: cython.int
+        c1: cython.int
         left: cython.double = 0.0
         right: cython.double = 0.0
-        k: cython.int
-        a: cython.int
-        b: cython.int
-        e: cython.int
+        low: cython.double = py if py < qy else qy
+        high: cython.double = qy if py < qy else py
+        x0: cython.double
+        y0: cython.double
+        x1: cython.double
+        y1: cython.double
+        for row in range(self.row_of(low - PAD), self.row_of(high + PAD) + 1):
+            span(px, py, qx, qy, row - 1, cython.address(left), cython.address(right))
+            c0 = row * self.gw + self.column_of(left)
+            c1 = row * self.gw + self.column_of(right)
+            if self.n_crowded == 0 or self.cell_start[c1 + 1] - self.cell_start[c0] < CROWD:
+                for k in range(self.cell_start[c0], self.cell_start[c1 + 1]):
+                    if self.meets(self.cell_edge[k], px, py, qx, qy, u, v):
+                        return True
+                continue
+            for column in range(c0, c1 + 1):
+                if self.crowded[column] < 0:
+                    for k in range(self.cell_start[column], self.cell_start[column + 1]):
+                        if self.meets(self.cell_edge[k], px, py, qx, qy, u, v):
+                            return True
+                    continue
+                n = FINE
+                x0 = (px - (column - row * self.gw - 1)) * n
+                y0 = (py - (row - 1)) * n
+                x1 = (qx - (column - row * self.gw - 1)) * n
+                y1 = (qy - (row - 1)) * n
+                low = y0 if y0 < y1 else y1
+                high = y1 if y0 < y1 else y0
+                for fine in range(within(low - PAD, n), within(high + PAD, n) + 1):
+                    span(x0, y0, x1, y1, fine, cython.address(left), cython.address(right))
+                    if right < 0.0 or left > n:
+                        continue
+                    c0 = self.crowded[column] + fine * n
+                    for k in range(
+                        self.fine_start[c0 + within(left, n)], self.fine_start[c0 + within(right, n) + 1]
+                    ):
+                        if self.meets(self.fine_edge[k], px, py, qx, qy, u, v):
+                            return True
+        return False
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def meets(
+        self,
+        e: cython.int,
+        px: cython.double,
+        py: cython.double,
+        qx: cython.double,
+        qy: cython.double,
+        u: cython.int,
+        v: cython.int,
+    ) -> cython.bint:
+        """Whether one edge obstructs the segment from p to q; see `obstructed`."""
+        a: cython.int = self.ea[e]
+        b: cython.int = self.eb[e]
+        ax: cython.double = self.vx[a]
+        ay: cython.double = self.vy[a]
+        bx: cython.double = self.vx[b]
+        by: cython.double = self.vy[b]
         s: cython.int
         t: cython.int
-        ux: cython.double = self.vx[u]
-        uy: cython.double = self.vy[u]
-        x: cython.double = self.vx[v]
-        y: cython.double = self.vy[v]
-        y0: cython.double = y if y < uy else uy
-        y1: cython.double = uy if y < uy else y
-        for row in range(self.row_of(y0 - PAD), self.row_of(y1 + PAD) + 1):
-            span(ux, uy, x, y, row - 1, cython.address(left), cython.address(right))
-            for k in range(
-                self.cell_start[row * self.gw + self.column_of(left)],
-                self.cell_start[row * self.gw + self.column_of(right) + 1],
-            ):
-                e = self.cell_edge[k]
-                a = self.ea[e]
-                b = self.eb[e]
-                s = 0 if a == u or a == v else orient(ux, uy, x, y, self.vx[a], self.vy[a])
-                t = 0 if b == u or b == v else orient(ux, uy, x, y, self.vx[b], self.vy[b])
-                if s == 0 and between(ux, uy, x, y, self.vx[a], self.vy[a]):
-                    return False
-                if t == 0 and between(ux, uy, x, y, self.vx[b], self.vy[b]):
-                    return False
-                if (
-                    s * t < 0
-                    and orient(self.vx[a], self.vy[a], self.vx[b], self.vy[b], ux, uy)
-                    * orient(self.vx[a], self.vy[a], self.vx[b], self.vy[b], x, y)
-                    < 0
-                ):
-                    return False
-        return True
+        if v < 0:  # two queries
+            return side_of_vertex(px, py, qx, qy, ax, ay) != side_of_vertex(px, py, qx, qy, bx, by) and side_of_query(
+                ax, ay, bx, by, px, py
+            ) != side_of_query(ax, ay, bx, by, qx, qy)
+        if u < 0:  # a query and a vertex
+            if a == v or b == v:
+                return False
+            if side_of_query(qx, qy, ax, ay, px, py) == side_of_query(qx, qy, bx, by, px, py):
+                return False
+            s = orient(ax, ay, bx, by, qx, qy)
+            return s != 0 and s != side_of_query(ax, ay, bx, by, px, py)
+        s = 0 if a == u or a == v else orient(px, py, qx, qy, ax, ay)
+        t = 0 if b == u or b == v else orient(px, py, qx, qy, bx, by)
+        if (s == 0 and between(px, py, qx, qy, ax, ay)) or (t == 0 and between(px, py, qx, qy, bx, by)):
+            return True
+        return s * t < 0 and orient(ax, ay, bx, by, px, py) * orient(ax, ay, bx, by, qx, qy) < 0
 
     @cython.cfunc
     @cython.nogil
@@ -382,6 +411,73 @@ def enter(scene: Scene, e: cython.int, fill: cython.bint) -> cython.void:
 
 
 @cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def within(x: cython.double, n: cython.int) -> cython.int:
+    """The cell of a fine grid that holds a coordinate, in range."""
+    return 0 if x < 0.0 else (n - 1 if x >= n else cython.cast(cython.int, x))
+
+
+@cython.cfunc
+def count_crowds(scene: Scene) -> cython.void:
+    """Find the crowded cells, and say where the fine grid of each begins."""
+    k: cython.int
+    for k in range(scene.gw * scene.gh):
+        if scene.cell_start[k + 1] - scene.cell_start[k] >= CROWD:
+            scene.crowded[k] = scene.n_crowded * FINE * FINE
+            scene.n_crowded += 1
+
+
+@cython.cfunc
+def refine(scene: Scene, fill: cython.bint) -> cython.int:
+    """Count the edges of each fine cell as running sums, or enter them; how many entries there are."""
+    cell: cython.int
+    k: cython.int
+    e: cython.int
+    row: cython.int
+    c: cython.int
+    n: cython.int
+    total: cython.int = 0
+    left: cython.double = 0.0
+    right: cython.double = 0.0
+    ax: cython.double
+    ay: cython.double
+    bx: cython.double
+    by: cython.double
+    for cell in range(scene.gw * scene.gh):
+        if scene.crowded[cell] < 0:
+            continue
+        for k in range(scene.cell_start[cell], scene.cell_start[cell + 1]):
+            e = scene.cell_edge[k]
+            ax = (scene.vx[scene.ea[e]] - (cell % scene.gw - 1)) * FINE
+            ay = (scene.vy[scene.ea[e]] - (cell // scene.gw - 1)) * FINE
+            bx = (scene.vx[scene.eb[e]] - (cell % scene.gw - 1)) * FINE
+            by = (scene.vy[scene.eb[e]] - (cell // scene.gw - 1)) * FINE
+            for row in range(
+                within((ay if ay < by else by) - PAD, FINE), within((by if ay < by else ay) + PAD, FINE) + 1
+            ):
+                span(ax, ay, bx, by, row, cython.address(left), cython.address(right))
+                if right < 0.0 or left > FINE:
+                    continue
+                for c in range(within(left, FINE), within(right, FINE) + 1):
+                    n = scene.crowded[cell] + row * FINE + c
+                    if fill:
+                        scene.fine_edge[scene.fine_start[n]] = e
+                    scene.fine_start[n] += 1
+    n = scene.n_crowded * FINE * FINE
+    if fill:
+        for k in range(n, 0, -1):
+            scene.fine_start[k] = scene.fine_start[k - 1]
+        scene.fine_start[0] = 0
+        return 0
+    for k in range(n + 1):
+        c = scene.fine_start[k]
+        scene.fine_start[k] = total
+        total += c
+    return total
+
+
+@cython.cfunc
 def find_nodes(scene: Scene) -> cython.void:
     """The nodes: vertices strictly inside the frame with a sector of π or more between neighbouring edges.
 
@@ -393,8 +489,8 @@ def find_nodes(scene: Scene) -> cython.void:
     d: cython.int
     t: cython.int
     s: cython.int
-    first: cython.p_int
-    others: cython.p_int
+    first: cython.p_int = scene.star_start
+    others: cython.p_int = scene.star
     place: cython.int
     n: cython.int = 0
     x: cython.double
@@ -402,10 +498,6 @@ def find_nodes(scene: Scene) -> cython.void:
     left: cython.int
     right: cython.int
     on: cython.int
-    first = cython.cast(cython.p_int, malloc((scene.n_vertices + 1) * cython.sizeof(cython.int)))
-    others = cython.cast(cython.p_int, malloc(2 * scene.n_edges * cython.sizeof(cython.int)))
-    for v in range(scene.n_vertices + 1):
-        first[v] = 0
     for k in range(scene.n_edges):
         first[scene.ea[k]] += 1
         first[scene.eb[k]] += 1
@@ -449,8 +541,6 @@ def find_nodes(scene: Scene) -> cython.void:
         elif orient(x, y, scene.vx[right], scene.vy[right], scene.vx[left], scene.vy[left]) >= 0:
             n = add_node(scene, n, v, left, right)
     scene.n_nodes = n
-    free(first)
-    free(others)
 
 
 @cython.cfunc
@@ -564,13 +654,15 @@ def arc(scene: Scene, m: cython.int, n: cython.int) -> cython.double:
 @cython.nogil
 @cython.exceptval(check=False)
 def neighbours(scene: Scene, u: cython.int, v: cython.int) -> cython.bint:
-    """Whether an edge joins two vertices: it is in the cell of either."""
-    k: cython.int = scene.row_of(scene.vy[u]) * scene.gw + scene.column_of(scene.vx[u])
-    e: cython.int
+    """Whether an edge joins two vertices, by the one that has fewer."""
     i: cython.int
-    for i in range(scene.cell_start[k], scene.cell_start[k + 1]):
-        e = scene.cell_edge[i]
-        if (scene.ea[e] == u and scene.eb[e] == v) or (scene.ea[e] == v and scene.eb[e] == u):
+    t: cython.int
+    if scene.star_start[u + 1] - scene.star_start[u] > scene.star_start[v + 1] - scene.star_start[v]:
+        t = u
+        u = v
+        v = t
+    for i in range(scene.star_start[u], scene.star_start[u + 1]):
+        if scene.star[i] == v:
             return True
     return False
 

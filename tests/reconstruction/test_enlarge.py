@@ -236,8 +236,8 @@ def test_one_sample():
     assert (enlarge(image, edges, 1, 1, soften=True).values == 77).all()
 
 
-def test_thousands_of_tiny_edges_in_one_cell():
-    edges = tiny(np.random.default_rng(0), 6, 5, 32)
+def test_a_thousand_tiny_edges_in_one_cell():
+    edges = tiny(np.random.default_rng(0), 6, 5, 32)  # 1024 of them
     f = samples_for(np.random.default_rng(1), 5, 6)
     value = reconstruct(f, edges, 48, 40)
     x, y = np.meshgrid(np.arange(18, 30) / 8 + 1 / 16 - 0.5, np.arange(20, 26) / 8 + 1 / 16 - 0.5)
