@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Sequence
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
 from penink_cli.errors import ParameterError, printable
-from penink_cli.formats import strokes
-from penink_cli.formats.page import paper_size
-from penink_cli.model import Strokes
 from penink_cli.options import LENGTH, Length
+from penink_cli.papers import paper_size
 from penink_cli.streams import reading, source_name
+
+if TYPE_CHECKING:  # numpy and what needs it are imported when there is work, not for a help text
+    from penink_cli.model import Strokes
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -113,9 +114,11 @@ def travel_options(function: F) -> F:
 
 def read_layers(files: Sequence[str]) -> list[Strokes]:
     """The layers, the first at the bottom; no file is standard input."""
+    from penink_cli.formats import strokes
+
     paths = list(files) or ["-"]
     if paths.count("-") > 1:
-        raise ParameterError("standard input can be one layer only")
+        raise click.UsageError("standard input can be one layer only")
     layers = []
     for path in paths:
         with reading(path) as stream:

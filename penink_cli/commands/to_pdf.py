@@ -6,8 +6,6 @@ from typing import Any
 
 import click
 
-from penink_cli.formats import pdf
-from penink_cli.formats.page import lay_out
 from penink_cli.layer_options import colour_option, files_argument, page_options, read_layers
 from penink_cli.options import output_options
 from penink_cli.streams import writing
@@ -36,6 +34,9 @@ def to_pdf(
     penink to-pdf photo.strokes.jsonl -o photo.pdf
     penink to-pdf --paper letter --margin 0.5in photo.strokes.jsonl -o photo.pdf
     """
+    from penink_cli.formats import pdf
+    from penink_cli.formats.page import lay_out
+
     layers = read_layers(files)
     page = lay_out(layers, paper, margin, landscape)
     with writing(output) as out:

@@ -7,9 +7,6 @@ from typing import Any
 import click
 
 from penink_cli.errors import ParameterError
-from penink_cli.formats.page import lay_out
-from penink_cli.formats.pgm import check_size
-from penink_cli.formats.raster import cover
 from penink_cli.layer_options import files_argument, page_options, read_layers
 from penink_cli.options import Finite, output_options, processors, threads_option
 from penink_cli.progress import progress
@@ -29,6 +26,10 @@ def _pixels(
     quiet: bool,
     png: bool,
 ) -> None:
+    from penink_cli.formats.page import lay_out
+    from penink_cli.formats.pgm import check_size
+    from penink_cli.formats.raster import cover
+
     layers = read_layers(files)
     page = lay_out(layers, paper, margin, landscape)
     width, height = cover.size(page, dpi)

@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-from functools import partial
 from typing import Any
 
 import click
 
-from penink_cli.formats import postscript
-from penink_cli.formats.page import lay_out
 from penink_cli.layer_options import colour_option, files_argument, page_options, read_layers
 from penink_cli.options import output_options
 from penink_cli.streams import writing
-from penink_cli.travel.order import ordered
 
 
 @click.command(name="to-ps")
@@ -41,6 +37,12 @@ def to_ps(
     penink blast --texture crosshatch --width 4in photo.pgm | penink to-ps -o photo.eps
     penink to-ps --paper a4 --margin 15mm photo.strokes.jsonl | lpr
     """
+    from functools import partial
+
+    from penink_cli.formats import postscript
+    from penink_cli.formats.page import lay_out
+    from penink_cli.travel.order import ordered
+
     layers = read_layers(files)
     page = lay_out(layers, paper, margin, landscape)
     with writing(output, binary=False) as out:

@@ -6,8 +6,6 @@ from typing import Any
 
 import click
 
-from penink_cli.formats import svg
-from penink_cli.formats.page import lay_out
 from penink_cli.layer_options import (
     colour_option,
     files_argument,
@@ -51,6 +49,9 @@ def to_svg(
     penink to-svg photo.strokes.jsonl -o photo.svg
     penink to-svg --order --speed 50mm --paper a4 --margin 1cm photo.strokes.jsonl -o photo.svg
     """
+    from penink_cli.formats import svg
+    from penink_cli.formats.page import lay_out
+
     layers = read_layers(files)
     page = lay_out(layers, paper, margin, landscape)
     if order:

@@ -1,0 +1,128 @@
+"""Man pages and shell completion, made from the same help texts that ``--help`` prints.
+
+``python -m penink_cli.manual`` writes them into penink_cli/share, whence they are installed.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import click
+from click.shell_completion import BashComplete, FishComplete, ShellComplete, ZshComplete
+
+from penink_cli.main import SUBCOMMANDS, penink
+
+_COMMON = r"""
+.SH EXIT STATUS
+.TP
+.B 0
+The whole output has been delivered.
+.TP
+.B 1
+Input that is wrong or cannot be read, a limit that is exceeded, an output that cannot be written: one line on
+standard error says which. A file named by \fB\-o\fR is then as it was before.
+.TP
+.B 2
+The command line is wrong.
+.SH ENVIRONMENT
+.TP
+.B PENINK_DEBUG
+Set to 1, an error shows its traceback.
+"""
+
+
+def man_page(name: str | None) -> str:
+    """The page of one subcommand, or of penink itself, in man's macros."""
+    command: click.Command | None = penink
+    context = click.Context(penink, info_name="penink")
+    if name is not None:
+        command = penink.get_command(context, name)  # type: ignore[attr-defined]
+        assert command is not None
+        context = click.Context(command, info_name=name, parent=context)
+    title = "penink" if name is None else f"penink-{name}"
+    paragraphs = _paragraphs(command.help or "")
+    lines = [f'.TH "{title.upper()}" 1 "" "penink" "User Commands"', ".SH NAME"]
+    lines.append(_escaped(title) + r" \- " + _escaped(paragraphs[0][1].rstrip(".")))
+    pieces = " ".join(command.collect_usage_pieces(context))
+    lines += [".SH SYNOPSIS", rf".B {_escaped(context.command_path)}", _escaped(pieces), ".SH DESCRIPTION"]
+    lines += _running([(kind, text) for kind, text in paragraphs if kind == "text"])
+    lines += [".SH OPTIONS"]
+    for left, text in _options(command, context):
+        lines += [".TP", rf"\fB{_escaped(left)}\fR", _escaped(text) or r"\&"]
+    if name is None:
+        lines += [".SH SUBCOMMANDS"]
+        for other, (_, text) in SUBCOMMANDS.items():
+            lines += [".TP", rf".BR penink\-{_escaped(other)} (1)", _escaped(text)]
+    examples = [text for kind, text in paragraphs if kind == "lines"]
+    if examples:
+        lines += [".SH EXAMPLES"]
+        for text in examples:
+            lines += [".PP", ".nf", ".RS", *(_escaped(line) for line in text.split("\n")), ".RE", ".fi"]
+    lines += _COMMON.strip().split("\n")
+    others = [r".BR penink (1)"] if name is not None else [r".BR gs (1)", r".BR make (1)"]
+    lines += [".SH SEE ALSO", *others]
+    return "\n".join(lines) + "\n"
+
+
+def _paragraphs(text: str) -> list[tuple[str, str]]:
+    r"""Paragraphs of a help text: ("text", one line), or ("lines", as they stand) after a \b."""
+    result = []
+    for paragraph in re.split(r"\n\s*\n", re.sub(r"(?m)^ +$", "", text.strip("\n"))):
+        if paragraph.lstrip().startswith("\b"):
+            result.append(("lines", paragraph.lstrip()[1:].strip("\n")))
+        else:
+            result.append(("text", " ".join(paragraph.split())))
+    return result
+
+
+def _running(paragraphs: list[tuple[str, str]]) -> list[str]:
+    return [line for _, text in paragraphs for line in (".PP", _escaped(text))][1:]
+
+
+def _options(command: click.Command, context: click.Context) -> Iterator[tuple[str, str]]:
+    for parameter in command.get_params(context):
+        record = parameter.get_help_record(context)
+        if record:
+            yield record[0], " ".join(record[1].split())
+
+
+def _escaped(text: str) -> str:
+    """Text that troff takes as it stands."""
+    coded = text.replace("\\", r"\e").replace("-", r"\-").replace("'", r"\(aq").replace("`", r"\(ga")
+    coded = coded.replace("^", r"\(ha").replace("~", r"\(ti")
+    coded = "".join(c if ord(c) < 128 else rf"\[u{ord(c):04X}]" for c in coded)
+    return r"\&" + coded if coded.startswith(".") else coded
+
+
+def completion_script(shell: str) -> str:
+    """What bash, zsh or fish read to complete penink's words."""
+    kinds: dict[str, type[ShellComplete]] = {"bash": BashComplete, "zsh": ZshComplete, "fish": FishComplete}
+    complete = kinds[shell](penink, {}, "penink", "_PENINK_COMPLETE")
+    text = complete.source_template % complete.source_vars()
+    return text.strip() + "\n"
+
+
+def files() -> Iterator[tuple[str, str]]:
+    """Path below share and content of everything that is installed."""
+    for name in (None, *SUBCOMMANDS):
+        yield f"man/man1/penink{'-' + name if name else ''}.1", man_page(name)
+    yield "bash-completion/completions/penink", completion_script("bash")
+    yield "zsh/site-functions/_penink", completion_script("zsh")
+    yield "fish/vendor_completions.d/penink.fish", completion_script("fish")
+
+
+def main() -> None:
+    """Write all files below the folder given, by default the package's own share."""
+    root = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).parent / "share"
+    for name, text in files():
+        target = root / name
+        os.makedirs(target.parent, exist_ok=True)
+        target.write_text(text, encoding="ascii")
+
+
+if __name__ == "__main__":
+    main()
