@@ -13,8 +13,12 @@ import importlib
 import os
 import sys
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import click
+
+if TYPE_CHECKING:
+    from click.shell_completion import CompletionItem
 
 from penink_cli import __version__, streams
 from penink_cli.errors import PeninkError, printable
@@ -38,6 +42,7 @@ SUBCOMMANDS = {
     "to-pdf": ("to_pdf", "Write strokes as a PDF page of vector paths."),
     "to-pgm": ("to_pgm", "Draw strokes into a grey image, by the area that ink covers."),
     "to-png": ("to_png", "Draw strokes into a PNG image, by the area that ink covers."),
+    "completion": ("completion", "Print what makes a shell complete penink's words."),
 }
 
 
@@ -65,6 +70,13 @@ class LazyGroup(click.Group):
             hint = f"did you mean {near[0]}?" if near else f"known are {', '.join(SUBCOMMANDS)}"
             raise click.UsageError(f"no subcommand {printable(args[0], 60)}; {hint}", ctx)
         return super().resolve_command(ctx, args)
+
+    def shell_complete(self, ctx: click.Context, incomplete: str) -> list[CompletionItem]:
+        """Subcommands from the table, importing none, and the group's own options."""
+        from click.shell_completion import CompletionItem
+
+        named = [CompletionItem(n, help=h) for n, (_, h) in SUBCOMMANDS.items() if n.startswith(incomplete)]
+        return named + click.Command.shell_complete(self, ctx, incomplete)
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """List the subcommands from the table, importing none."""

@@ -37,11 +37,12 @@ Set to 1, an error shows its traceback.
 
 def man_page(name: str | None) -> str:
     """The page of one subcommand, or of penink itself, in man's macros."""
-    command: click.Command | None = penink
+    command: click.Command = penink
     context = click.Context(penink, info_name="penink")
     if name is not None:
-        command = penink.get_command(context, name)  # type: ignore[attr-defined]
-        assert command is not None
+        found = penink.get_command(context, name)
+        assert found is not None
+        command = found
         context = click.Context(command, info_name=name, parent=context)
     title = "penink" if name is None else f"penink-{name}"
     paragraphs = _paragraphs(command.help or "")
@@ -85,7 +86,7 @@ def _running(paragraphs: list[tuple[str, str]]) -> list[str]:
 
 def _options(command: click.Command, context: click.Context) -> Iterator[tuple[str, str]]:
     for parameter in command.get_params(context):
-        record = parameter.get_help_record(context)
+        record = parameter.get_help_record(context) if isinstance(parameter, click.Option) else None
         if record:
             yield record[0], " ".join(record[1].split())
 

@@ -6,14 +6,15 @@ import gzip
 import io
 from collections.abc import Callable
 from importlib import resources
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
 from penink_cli.errors import ParameterError, printable
-from penink_cli.formats import texture as texture_format
-from penink_cli.model import Texture
 from penink_cli.streams import reading, source_name
+
+if TYPE_CHECKING:
+    from penink_cli.model import Texture
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -38,6 +39,8 @@ def shipped() -> list[str]:
 
 def find_texture(name: str) -> Texture:
     """The texture of that name, or in that file (a name with a dot or a slash in it, or ``-``)."""
+    from penink_cli.formats import texture as texture_format
+
     if name == "-" or "/" in name or "." in name:
         with reading(name) as stream:
             return texture_format.read(stream, source_name(name))

@@ -2,22 +2,21 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
-import numpy as np
 
-from penink_cli.blasting.blast import RULES
-from penink_cli.blasting.blast import blast as blast_tone
 from penink_cli.commands.inputs import only_one_standard_input, read_edges, read_grey
-from penink_cli.drawing import joined
 from penink_cli.errors import ParameterError
-from penink_cli.formats import strokes as strokes_format
 from penink_cli.layer_options import read_layers
-from penink_cli.model import Floats, GreyImage
 from penink_cli.options import LENGTH, POSITIVE, Finite, edges_option, filter_options, processors, threads_option
 from penink_cli.streams import writing
 from penink_cli.texture_options import find_texture, texture_option
+
+if TYPE_CHECKING:
+    from penink_cli.model import Floats, GreyImage
+
+RULES = ("best", "strict", "threshold")
 
 
 class DeviceDpi(click.ParamType):
@@ -90,6 +89,10 @@ def blast(
     \b
     penink blast --texture crosshatch --width 4in photo.pgm | penink to-ps -o photo.ps
     """
+    from penink_cli.blasting.blast import blast as blast_tone
+    from penink_cli.drawing import joined
+    from penink_cli.formats import strokes as strokes_format
+
     if (width is None) == (dpi is None):
         raise click.UsageError("give one of --width and --dpi")
     only_one_standard_input(file, edges_file, *ink_files, texture_name if texture_name == "-" else None)
@@ -113,6 +116,8 @@ def tone_curve(image: GreyImage, gamma: float) -> Floats:
     """Ink coverage (h, w) of the image, its grey (0 … 1) raised to gamma."""
     if gamma == 1.0:
         return image.tone
+    import numpy as np
+
     # by a table, and rounded, so that the power is the same on every machine
     table = np.array([round(1.0 - (v / image.maxval) ** gamma, 12) for v in range(image.maxval + 1)])
     return table[image.values]

@@ -7,18 +7,19 @@ import os
 import shlex
 from collections.abc import Callable, Sequence
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from penink_cli.commands.blast import DeviceDpi, check_size
 from penink_cli.commands.inputs import read_photo
 from penink_cli.errors import printable
-from penink_cli.formats.page import lay_out
-from penink_cli.model import GreyImage, Illustration, Layer, OutlineChoice, Strokes
 from penink_cli.options import LENGTH, Finite, filter_options, processors, threads_option, verbose_option
 from penink_cli.streams import writing
 from penink_cli.texture_options import find_texture, texture_option
+
+if TYPE_CHECKING:
+    from penink_cli.model import GreyImage, Illustration, OutlineChoice, Strokes
 
 OUTLINE_PEN_PT = 0.7
 OUTLINE_STRENGTH = 0.16  # the grey step that is worth an outline
@@ -70,6 +71,7 @@ def draw(
     penink draw photo.jpg --width 24in --device-dpi 1200 | lpr
     """
     from penink_cli import drawing
+    from penink_cli.model import Illustration, Layer, OutlineChoice
     from penink_cli.progress import progress
 
     ending = ".ps" if output is None or output == "-" else os.path.splitext(output)[1].lower()
@@ -115,6 +117,7 @@ def draw(
 
 def _write_ps(output: str | None, layers: Sequence[Strokes]) -> None:
     from penink_cli.formats import postscript
+    from penink_cli.formats.page import lay_out
     from penink_cli.travel.order import ordered
 
     with writing(output, binary=False) as out:
@@ -123,6 +126,7 @@ def _write_ps(output: str | None, layers: Sequence[Strokes]) -> None:
 
 def _write_svg(output: str | None, layers: Sequence[Strokes]) -> None:
     from penink_cli.formats import svg
+    from penink_cli.formats.page import lay_out
 
     with writing(output, binary=False) as out:
         svg.write(out, layers, lay_out(layers))
@@ -130,12 +134,14 @@ def _write_svg(output: str | None, layers: Sequence[Strokes]) -> None:
 
 def _write_pdf(output: str | None, layers: Sequence[Strokes]) -> None:
     from penink_cli.formats import pdf
+    from penink_cli.formats.page import lay_out
 
     with writing(output) as out:
         pdf.write(out, layers, lay_out(layers))
 
 
 def _write_png(output: str | None, layers: Sequence[Strokes]) -> None:
+    from penink_cli.formats.page import lay_out
     from penink_cli.formats.raster import cover, png
 
     page = lay_out(layers)

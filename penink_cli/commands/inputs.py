@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import os
-from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import click
 
 from penink_cli import streams
 from penink_cli.errors import FormatError, LimitError, PeninkError
-from penink_cli.model import EdgeList, GreyImage, Illustration
+
+if TYPE_CHECKING:
+    from penink_cli.model import EdgeList, GreyImage, Illustration
 
 MAX_MEMBER = 1 << 28  # bytes of a file that a manifest names
 
@@ -93,6 +95,8 @@ def read_illustration(path: str | None, max_pixels: int) -> Illustration:
 
 def settled(illustration: Illustration) -> Illustration:
     """The illustration at the precision it is kept at: samples at their levels, edges on the grid, rounded numbers."""
+    from dataclasses import replace
+
     from penink_cli.arrangement.quantisation import quantise
     from penink_cli.formats import compact
     from penink_cli.formats.illustration import rounded

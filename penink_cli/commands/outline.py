@@ -8,8 +8,6 @@ import click
 
 from penink_cli.commands.inputs import read_edges
 from penink_cli.errors import FormatError
-from penink_cli.formats import strokes
-from penink_cli.model import OutlineChoice
 from penink_cli.options import LENGTH, Finite, filter_options
 from penink_cli.streams import source_name, writing
 
@@ -77,6 +75,8 @@ def outline(
     """
     from penink_cli.commands.blast import check_size
     from penink_cli.drawing import outline_strokes
+    from penink_cli.formats import strokes
+    from penink_cli.model import OutlineChoice
 
     edges = read_edges(file)
     if edges is None:

@@ -7,7 +7,6 @@ from typing import Any
 import click
 
 from penink_cli.commands.inputs import read_illustration
-from penink_cli.formats import archive, illustration
 from penink_cli.options import filter_options
 from penink_cli.streams import writing
 
@@ -23,6 +22,8 @@ def pack(file: str | None, output: str | None, max_pixels: int, **_: Any) -> Non
     \b
     penink pack keys.illustration.json -o keys.penink
     """
+    from penink_cli.formats import archive, illustration
+
     packed = archive.pack(illustration.members(read_illustration(file, max_pixels)))
     with writing(output) as out:
         out.write(packed)

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import click
 
 from penink_cli.commands.blast import DeviceDpi, check_size
 from penink_cli.commands.inputs import read_illustration
 from penink_cli.errors import ParameterError, printable
-from penink_cli.formats import strokes
-from penink_cli.model import Illustration
 from penink_cli.options import LENGTH, POSITIVE, filter_options, processors, threads_option
 from penink_cli.streams import writing
+
+if TYPE_CHECKING:
+    from penink_cli.model import Illustration
 
 
 @click.command()
@@ -53,6 +56,7 @@ def render(
     penink render keys.penink --width 24in --device-dpi 1200 | penink to-ps -o poster.eps
     """
     from penink_cli.drawing import joined, layer_strokes
+    from penink_cli.formats import strokes
     from penink_cli.progress import progress
 
     if width is not None and scale is not None:

@@ -11,6 +11,7 @@ from penink_cli.errors import ParameterError
 from penink_cli.model import Strokes
 from penink_cli.papers import LIMIT, paper_size
 
+
 @dataclass(frozen=True)
 class Page:
     """A page of width × height points; the sheet's top-left corner lies at x, y (y down).

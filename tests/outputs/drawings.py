@@ -38,7 +38,7 @@ def every_kind():
     back = [[20, 60], [60, 60], [10, 60], [40, 60]]  # there and back on one line
     t = np.linspace(0, 12 * np.pi, 3 * 250 + 1)
     spiral = np.stack([70 + t * np.cos(t), 100 + t * np.sin(t)], axis=1)
-    zigzag = np.cumsum(rng.normal(0, 6, (13, 2)), axis=0) + (100, 100)
+    zigzag = np.cumsum(rng.normal(0, 6, (13, 2)), axis=0) + np.array((100, 100))
     over = [[-8, 130], [20, 150], [120, 150], [150, 130]]
     dots = [[[x, 50]] for x in (10, 14.5, 19, 30)]
     nothing = [[50, 50]] * 4  # a segment that goes nowhere is a dot

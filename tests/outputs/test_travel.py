@@ -13,7 +13,8 @@ from penink_cli.travel.order import drawn_length, joined, ordered, travel_length
 from tests.outputs.drawings import crosshatch, every_kind, strokes_of
 
 place = st.tuples(st.integers(0, 30).map(float), st.integers(0, 30).map(float))
-chains = st.lists(st.one_of(st.lists(place, min_size=4, max_size=4), st.lists(place, min_size=1, max_size=1)), max_size=40)
+curve, dot = (st.lists(place, min_size=n, max_size=n) for n in (4, 1))
+chains = st.lists(st.one_of(curve, dot), max_size=40)
 
 
 def as_multiset(strokes):
