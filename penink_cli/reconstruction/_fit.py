@@ -137,7 +137,7 @@ def _weigh_tile(
     y: cython.int,
     out: cython.p_double,
 ) -> cython.void:
-    """What equation 5's weights of the 16 samples (outer) differ from plain convolution's at each point (inner) of a tile.
+    """By what equation 5's weights of the 16 samples (outer) differ from plain ones at each point (inner) of a tile.
 
     x, y: the tile's first point along each axis. out: (16, 64).
     """
@@ -468,6 +468,23 @@ def transposed(
                 if w != 0:
                     for q in range(source.shape[1]):
                         out[base[p] + t, q] += w * source[p, q]
+
+
+def leave(
+    base: cython.int[::1], weight: cython.double[:, ::1], source: cython.double[:, ::1], out: cython.float[:, ::1]
+) -> None:
+    """Subtract weight[p, t] · source[base[p] + t] from out[p], for all rows p: the transpose of `transposed`."""
+    p: cython.Py_ssize_t
+    t: cython.Py_ssize_t
+    q: cython.Py_ssize_t
+    w: cython.double
+    with cython.nogil:
+        for p in range(out.shape[0]):
+            for t in range(weight.shape[1]):
+                w = weight[p, t]
+                if w != 0:
+                    for q in range(out.shape[1]):
+                        out[p, q] -= w * source[base[p] + t, q]
 
 
 def solve_banded(band: cython.double[:, ::1], values: cython.double[:, ::1]) -> None:

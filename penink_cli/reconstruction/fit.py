@@ -36,7 +36,7 @@ _HALO = 3
 _BLOCK_PX = 128
 _NEAR = 3.0  # samples: an edge farther away changes no pixel that these samples are fitted to
 _SPAN = 5
-_PLAIN_HOLD = 1e-3
+_PLAIN_HOLD = 0.01
 
 
 def blur_kernel(blur: float) -> Floats:
@@ -84,11 +84,19 @@ def _along(photo: Grey32, count: int, kernel: Floats, fine: int) -> Floats:
     for t in range(span):
         for u in range(t, span):
             np.add.at(band[:, u - t], low + t, weight[:, t] * weight[:, u])
+    low = low.astype(np.int32)
+    # Held to the mean of what each sample touches, where blur has left the photo nothing to tell.
+    touched = np.bincount((low[:, None] + np.arange(span)).ravel(), weight.ravel(), minlength=count)
+    means = np.zeros((count, photo.shape[1]))
+    _fit.transposed(low, weight, photo, means)
+    means /= touched[:, None]
+    rest = photo.copy()
+    _fit.leave(low, weight, means, rest)
+    out = np.zeros_like(means)
+    _fit.transposed(low, weight, rest, out)
     band[:, 0] += _PLAIN_HOLD * pixels / count
-    out = np.zeros((count, photo.shape[1]))
-    _fit.transposed(low.astype(np.int32), weight, photo, out)
     _fit.solve_banded(band, out)
-    return out
+    return out + means
 
 
 def fit_samples(
@@ -172,7 +180,8 @@ class _Fit:
         matters = _fit.rows(
             tile, x.taps.where, x.taps.cubic, x.taps.bspline, x.cell, x.first,
             y.taps.where, y.taps.cubic, y.taps.bspline, y.cell, y.first,
-            tiles, np.array([rows[0], columns[0]], np.int32), self.fine, self.x_base, self.y_base, self.x_plain, self.y_plain, 1.0, weight,
+            tiles, np.array([rows[0], columns[0]], np.int32), self.fine,
+            self.x_base, self.y_base, self.x_plain, self.y_plain, 1.0, weight,
         )  # fmt: skip
         if not matters:
             return

@@ -110,7 +110,7 @@ def remaining_error(
     for top in range(0, height, rows):
         first, last = max(0, top - halo), min(height, top + rows + halo)
         window = 0, fine * first, fine * width, fine * (last - first)
-        grey = reconstruct(samples, edges, fine * width, fine * height, window=window, threads=threads)
+        grey = reconstruct(samples.astype(float), edges, fine * width, fine * height, window=window, threads=threads)
         grey = np.clip(grey, 0, 1, out=grey).reshape(last - first, fine, width, fine).mean(axis=(1, 3))
         if blur:
             grey = gaussian_filter(grey, blur, mode="nearest")
