@@ -145,7 +145,9 @@ def _fixed(triangles: Ints, segments: Ints, n: int) -> npt.NDArray[np.bool_]:
     """Which sides are edges of the arrangement."""
     following = np.roll(triangles, -1, axis=1)
     keys = np.minimum(triangles, following) * n + np.maximum(triangles, following)
-    return np.isin(keys, segments.min(axis=1) * n + segments.max(axis=1)) if len(segments) else np.zeros_like(keys, bool)
+    return (
+        np.isin(keys, segments.min(axis=1) * n + segments.max(axis=1)) if len(segments) else np.zeros_like(keys, bool)
+    )
 
 
 def _regions(neighbours: Ints, fixed: npt.NDArray[np.bool_]) -> Ints:

@@ -268,9 +268,7 @@ class Scene:
                     if right < 0.0 or left > n:
                         continue
                     c0 = self.crowded[column] + fine * n
-                    for k in range(
-                        self.fine_start[c0 + within(left, n)], self.fine_start[c0 + within(right, n) + 1]
-                    ):
+                    for k in range(self.fine_start[c0 + within(left, n)], self.fine_start[c0 + within(right, n) + 1]):
                         if self.meets(self.fine_edge[k], px, py, qx, qy, u, v):
                             return True
         return False

@@ -310,7 +310,6 @@ def blend(
 ) -> cython.void:
     """The values of a tile that `see` found edges in; samples: unpadded, row by row. xc …: (n, 4) from the tile on."""
     k: cython.int
-    i: cython.int
     c: cython.int
     s: cython.int
     n: cython.int = 8 * tile.ny
@@ -318,7 +317,6 @@ def blend(
     ux: real[8]
     uy: real[8]
     kx: real[32]
-    ky: real[32]
     top: real[64]
     bottom: real[64]
     top_b: real[64]
@@ -403,7 +401,9 @@ def columns(kx: cython.pointer[real], weights: cython.pointer[real], nx: cython.
             kx[8 * i + c] = weights[4 * k + i]
 
 
-def expand(samples: real[:, ::1], begin: cython.int, x_first: cython.int[::1], xw: real[:, ::1], out: real[:, ::1]) -> None:
+def expand(
+    samples: real[:, ::1], begin: cython.int, x_first: cython.int[::1], xw: real[:, ::1], out: real[:, ::1]
+) -> None:
     """The horizontal half of the separable pass, for the rows of samples from `begin` on, clamped, as many as out has.
 
     xw: (4, n) weights of each column of output. out: (rows, n).
@@ -440,7 +440,12 @@ def expand(samples: real[:, ::1], begin: cython.int, x_first: cython.int[::1], x
 
 
 def combine(
-    expanded: real[:, ::1], begin: cython.int, y_first: cython.int[::1], yw: real[:, ::1], maxval: real, out: stored[:, ::1]
+    expanded: real[:, ::1],
+    begin: cython.int,
+    y_first: cython.int[::1],
+    yw: real[:, ::1],
+    maxval: real,
+    out: stored[:, ::1],
 ) -> None:
     """The vertical half: every row of output from four rows expanded, of which the first is sample row `begin`."""
     y: cython.Py_ssize_t

@@ -34,7 +34,6 @@ class Tile:
     """
 
     def __init__(self, finder: Finder, step_x: cython.double, step_y: cython.double, gather_radius: cython.int):
-        k: cython.int
         self.finder = finder
         self.scene = finder.scene
         self.step_x = step_x
@@ -127,7 +126,7 @@ class Tile:
     @cython.nogil
     @cython.exceptval(check=False)
     def see(self) -> cython.bint:
-        """Fill `hidden`, `all_visible` and `all_hidden`; False, and nothing filled, if every pixel sees every sample."""
+        """Fill `hidden`, `all_visible` and `all_hidden`; False, and nothing filled, if all pixels see all samples."""
         k: cython.int
         s: cython.int
         a: cython.int
@@ -404,9 +403,7 @@ class Tile:
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)
-    def box_side(
-        self, ax: cython.double, ay: cython.double, bx: cython.double, by: cython.double
-    ) -> cython.int:
+    def box_side(self, ax: cython.double, ay: cython.double, bx: cython.double, by: cython.double) -> cython.int:
         """On which side of the line a → b the whole tile lies; 0 where it does not, or nearly not."""
         dx: cython.double = bx - ax
         dy: cython.double = by - ay
@@ -467,7 +464,13 @@ class Tile:
             for j in range(8):
                 if (near >> j) & 1:
                     m = self.exactly(
-                        ax, ay, bx, by, from_sample, m, ROW << (8 * j) if by_rows else COLUMN << cython.cast(cython.ulonglong, j)
+                        ax,
+                        ay,
+                        bx,
+                        by,
+                        from_sample,
+                        m,
+                        ROW << (8 * j) if by_rows else COLUMN << cython.cast(cython.ulonglong, j),
                     )
         return m
 

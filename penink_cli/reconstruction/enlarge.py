@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import partial
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -127,7 +128,7 @@ def check_window(window: Window | None, width: int, height: int) -> Window:
     if width < 1 or height < 1:
         raise ParameterError(f"an output of {width} x {height} pixels is empty")
     if x < 0 or y < 0 or across < 1 or down < 1 or x + across > width or y + down > height:
-        raise ParameterError(f"window {x},{y},{across},{down} is not within the {width} x {height} pixels of the output")
+        raise ParameterError(f"window {x},{y},{across},{down} is not within the {width} x {height} pixels of output")
     return x, y, across, down
 
 
@@ -184,7 +185,7 @@ class _Enlargement:
         # Bands of whole tiles, as even as can be.
         pieces = min(len(y.cell), -(-y.count // rows))
         cuts = [len(y.cell) * k // pieces for k in range(pieces + 1)]
-        tasks = (partial(self.band, a, b) for a, b in zip(cuts[:-1], cuts[1:]))
+        tasks = (partial(self.band, a, b) for a, b in pairwise(cuts))
         return threading.in_order(tasks, threads)
 
     def band(self, a: int, b: int) -> Rows:
@@ -236,9 +237,7 @@ class _Reduction:
         self.x = taps(centres(self.width, w)[left : left + across], max(1.0, w / self.width))
         self.where = centres(self.height, h)[top : top + down]
         rows = max(1, min(32, -(-down // (4 * threads))))
-        tasks: Iterator[Callable[[], Rows]] = (
-            partial(self.band, k, min(k + rows, down)) for k in range(0, down, rows)
-        )
+        tasks: Iterator[Callable[[], Rows]] = (partial(self.band, k, min(k + rows, down)) for k in range(0, down, rows))
         return threading.in_order(tasks, threads)
 
     def band(self, begin: int, end: int) -> Rows:

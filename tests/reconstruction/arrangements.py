@@ -11,9 +11,7 @@ from penink_cli.model import EdgeList
 
 def edge_list(width, height, vertices, edges):
     """A valid edge list."""
-    found = EdgeList(
-        width, height, np.array(vertices, float).reshape(-1, 2), np.array(edges, np.int64).reshape(-1, 2)
-    )
+    found = EdgeList(width, height, np.array(vertices, float).reshape(-1, 2), np.array(edges, np.int64).reshape(-1, 2))
     check(found)
     return found
 
@@ -100,7 +98,9 @@ HOSTILE = {
     "straight chain": chain(6, 5, [(1 + 0.5 * k, 2.25) for k in range(8)]),
     "slanting straight chain": chain(6, 5, [(1 + 0.5 * k, 1 + 0.25 * k) for k in range(8)]),
     "T": edge_list(6, 5, [(1, 2.5), (3, 2.5), (5, 2.5), (3, 4.5)], [(0, 1), (1, 2), (1, 3)]),
-    "collinear and apart": edge_list(6, 5, [(1, 2), (2, 2), (3, 2), (4, 2), (4.5, 2), (5, 2)], [(0, 1), (2, 3), (4, 5)]),
+    "collinear and apart": edge_list(
+        6, 5, [(1, 2), (2, 2), (3, 2), (4, 2), (4.5, 2), (5, 2)], [(0, 1), (2, 3), (4, 5)]
+    ),
     "nearly closed square": chain(6, 5, [(2, 1), (4, 1), (4, 3), (2, 3), (2, 1.05)]),
     "closed square without a sample": chain(6, 5, [(2.6, 2.6), (3.4, 2.6), (3.4, 3.4), (2.6, 3.4)], closed=True),
     "closed square": chain(6, 5, [(1, 1), (4, 1), (4, 4), (1, 4)], closed=True),

@@ -167,7 +167,7 @@ def test_one_edge_list_serves_every_resolution():
 
 def test_around_an_open_end_the_tone_changes_smoothly():
     """Across a dangling edge the value jumps; past its end, the same step across its line changes next to nothing."""
-    y, x = np.mgrid[:12, :12] + 0.5
+    y, _ = np.mgrid[:12, :12] + 0.5
     f = np.where(y < 6, 0.2, 0.8)
     value = reconstruct(f, chain(12, 12, [(0, 6), (6, 6)]), 192, 192)
     jump = np.abs(value[96] - value[95])
