@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from penink_cli.errors import FormatError, LimitError
-from penink_cli.formats import edge_list
+from penink_cli.formats import _number_rows, edge_list, strict_json
 from penink_cli.model import EdgeList
 from tests.formats.readers import written
 
@@ -136,10 +136,10 @@ REFUSED = {
 
 
 @pytest.mark.parametrize("name", ACCEPTED)
-def test_is_read(name):
+def test_is_read(name, reader):
     document = ACCEPTED[name]
     jsonschema.validate(document, SCHEMA)
-    edges = read(document)
+    edges = reader(document)
     assert (edges.width, edges.height) == (document["width"], document["height"])
     assert edges.vertices.tolist() == document["vertices"] and edges.edges.tolist() == document["edges"]
     assert edges.vertices.shape[1:] == edges.edges.shape[1:] == (2,)
@@ -148,10 +148,10 @@ def test_is_read(name):
 
 
 @pytest.mark.parametrize("name", REFUSED)
-def test_is_refused(name):
+def test_is_refused(name, reader):
     document, complaint = REFUSED[name]
     with pytest.raises(FormatError) as caught:
-        read(document)
+        reader(document)
     assert complaint in str(caught.value) and str(caught.value).startswith("e.json: ")
     assert str(caught.value).isprintable()
 
@@ -180,6 +180,14 @@ def test_a_list_of_too_many_bytes_is_refused_before_it_is_parsed():
         read(b"[" * (edge_list.LEAST_BYTES + 1))
     with pytest.raises(FormatError, match="nested"):
         edge_list.read(io.BytesIO(b"[" * (edge_list.LEAST_BYTES + 1)), "e.json", max_pixels=10**9)
+
+
+@pytest.fixture(params=["in bulk", "by json"])
+def reader(request, monkeypatch):
+    """Both readers, whatever the text: the quick one where it takes it, and json's."""
+    if request.param == "by json":
+        monkeypatch.setattr(edge_list, "_plain", lambda text: None)
+    return read
 
 
 coordinates = st.integers(0, 400_000).map(lambda n: n / 10**edge_list.DECIMALS)
@@ -214,6 +222,34 @@ def test_what_is_written_is_read_as_it_was(edges):
     jsonschema.validate(json.loads(data), SCHEMA)
     assert same(read(data), edges)
     assert written(edge_list.write, read(data)) == data
+
+
+@given(lists(), st.data())
+def test_what_is_read_in_bulk_is_what_json_reads(edges, data):
+    """Whatever a few changed bytes make of a text as it is written: the quick reader agrees with json, or leaves it."""
+    text = bytearray(written(edge_list.write, edges))
+    for _ in range(data.draw(st.integers(0, 3))):
+        at = data.draw(st.integers(0, len(text) - 1))
+        text[at : at + data.draw(st.integers(0, 2))] = data.draw(
+            st.sampled_from([*b'0123456789.-+eE[]{}, \n"\x00'])
+        ).to_bytes()
+    quick = edge_list._plain(bytes(text))
+    if quick is not None:
+        assert same(quick, edge_list._edge_list(strict_json.loads(bytes(text), "e.json")))
+    elif text == written(edge_list.write, edges):
+        raise AssertionError("left to json")
+
+
+@pytest.mark.parametrize(
+    "number", ["0", "-0", "0.1", "39.99999999999999", "1e1", "1E+1", "0.30000000000000004", "12.000000"]
+)
+def test_every_way_to_write_a_number_is_the_number_that_json_reads(number, reader):
+    text = json.dumps(GOOD).replace("10.5", number).encode()
+    assert reader(text).vertices[2, 0] == float(number)
+
+
+def test_the_compiled_build_is_the_one_under_test():
+    assert _number_rows.COMPILED
 
 
 def test_the_bytes_are_these():
