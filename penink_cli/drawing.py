@@ -80,9 +80,9 @@ def outline_strokes(
 
     around = None
     if choice.regions:
-        from penink_cli.arrangement import triangulation
+        from penink_cli.arrangement import regions
 
-        around = triangulation.edges_around(edges, np.array(choice.regions, np.float64))
+        around = regions.edges_around(edges, np.array(choice.regions, np.float64))
     return outlines.outline(edges, width_pt, height_pt, choice, around, ink)
 
 

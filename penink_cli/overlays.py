@@ -26,9 +26,9 @@ def by_grey(photo: GreyImage, low: float, high: float) -> Floats:
 
 def by_region(photo: GreyImage, edges: EdgeList, points: Sequence[tuple[float, float]]) -> Floats:
     """1 where a pixel's centre lies in the regions of the arrangement that hold the points, else 0."""
-    from penink_cli.arrangement import triangulation
+    from penink_cli.arrangement import regions
 
-    return triangulation.region_mask(edges, np.array(points), *photo.values.shape[::-1]).astype(np.float64)
+    return regions.region_mask(edges, np.array(points), *photo.values.shape[::-1]).astype(np.float64)
 
 
 def overlay(photo: GreyImage, share: Floats, invert: bool = False) -> GreyImage:

@@ -60,12 +60,8 @@ def _length(step: Floats) -> float:
 def _piece(points: Floats, leaving: Floats, arriving: Floats, tolerance: float) -> tuple[Floats, int | None]:
     """One segment's control points (4, 2), and the worst point to split it at or None where it serves."""
     chord = points[-1] - points[0]
-    if len(points) <= 3:
-        third = _length(chord) / 3
-        control = np.stack([points[0], points[0] + leaving * third, points[-1] + arriving * third, points[-1]])
-        if len(points) == 2:
-            return np.stack([points[0], points[0] + chord / 3, points[-1] - chord / 3, points[-1]]), None
-        return control, None
+    if len(points) == 2:
+        return np.stack([points[0], points[0] + chord / 3, points[1] - chord / 3, points[1]]), None
     steps = np.sqrt(((points[1:] - points[:-1]) ** 2).sum(axis=1))
     t = np.concatenate([[0.0], np.cumsum(steps)])
     t /= t[-1]

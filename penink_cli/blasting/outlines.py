@@ -28,6 +28,8 @@ ONWARD = 0.5  # cosine of the sharpest bend that a stroke takes at a junction
 CLEAR = 1.8  # pens' widths that outline strokes keep from one another
 SHORTEST = 4.0  # pens' widths: anything shorter is a crumb
 PIECE_PT = 4.0  # longest piece of one width where the pen's pressure varies
+LIGHT = 0.5  # of the pen's width, for the faintest edges
+FULL = 0.4  # strength from which an edge gets all of it
 THIN = 0.55  # of the full width, at the tips of a stroke
 TAPER_PT = 14.0  # from the tip to the full width
 WAVER = 0.16  # the pressure's variation along a stroke, up and down
@@ -36,10 +38,14 @@ WAVER_PT = 30.0  # over about that length
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """Part of a chain: vertices (n, 2) in pixels of the edge list, whether it closes on itself, how telling it is."""
+    """Part of a chain: vertices (n, 2) in pixels of the edge list, whether it closes on itself.
+
+    strength: the mean along it, 0 … 1. weight: how telling it is, strength times length.
+    """
 
     vertices: Floats
     ring: bool
+    strength: float
     weight: float
 
 
@@ -67,7 +73,11 @@ def outline(
         for part, ring in clear.free(points * scale, run.ring, SHORTEST * choice.pen_pt):
             tolerance = max(TOLERANCE, TOLERANCE_PT / pixel_pt)
             control = _smooth(points[part], ring, tolerance) * scale
-            parts.append((control, np.array([choice.pen_pt])) if choice.even else _swelling(control, choice.pen_pt))
+            if choice.even:
+                parts.append((control, np.array([choice.pen_pt])))
+            else:
+                pressure = LIGHT + (1 - LIGHT) * min(1.0, run.strength / FULL)
+                parts.append(_swelling(control, pressure * choice.pen_pt))
         clear.take(points * scale)
     return _strokes(parts, width_pt, height_pt)
 
@@ -92,7 +102,7 @@ def _runs(edges: EdgeList, choice: OutlineChoice, around: npt.NDArray[np.bool_] 
                 continue
             weight = float((mean[i:j] * lengths[chain[i:j]]).sum())
             ring = whole and vertices[0] == vertices[-1]
-            found.append(Run(edges.vertices[vertices[i : j + 1]], ring, weight))
+            found.append(Run(edges.vertices[vertices[i : j + 1]], ring, weight / length, weight))
     return found
 
 

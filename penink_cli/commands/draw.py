@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from penink_cli.model import GreyImage, Illustration, OutlineChoice, Strokes
 
 OUTLINE_PEN_PT = 0.7
-OUTLINE_STRENGTH = 0.16  # the grey step that is worth an outline
+OUTLINE_STRENGTH = 0.2  # the grey step that is worth an outline
 OUTLINE_LENGTH = 0.04  # of the photo's longer side: shorter chains are texture, and the hatching's to show
 PNG_DPI = 150.0
 
