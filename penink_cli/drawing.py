@@ -31,19 +31,19 @@ def enlarged(samples: GreyImage, edges: EdgeList | None, size: tuple[int, int], 
     return GreyImage(np.concatenate(list(rows)).astype(np.uint8), 255)
 
 
-def represented(photo: GreyImage, advance: Advance = lambda done: None) -> tuple[EdgeList, GreyImage]:
+def represented(
+    photo: GreyImage, threads: int | None, advance: Advance = lambda done: None
+) -> tuple[EdgeList, GreyImage]:
     """A photograph's edges, and its samples on the smallest grid that serves, as the filters write them."""
     from penink_cli.arrangement import detection
     from penink_cli.formats import edge_list
-    from penink_cli.reconstruction import extraction, reduction
+    from penink_cli.reconstruction import extraction, grid
 
     edges = edge_list.rounded(detection.detect_edges(photo.grey))
     advance(1)
     samples = GreyImage.from_grey(extraction.extract_samples(photo.grey, edges, None), 255)
     advance(1)
-    rows, columns = photo.values.shape
-    factor = max(1.0, max(rows, columns) / 128)
-    reduced = reduction.reduce(samples.grey, edges, round(columns / factor), round(rows / factor))
+    reduced = grid.choose_grid(samples.grey, edges, grid.MAX_ERROR, photo=photo.grey, threads=threads).samples
     advance(1)
     return edges, GreyImage.from_grey(reduced, 255)
 

@@ -77,6 +77,7 @@ def draw(
     ending = ".ps" if output is None or output == "-" else os.path.splitext(output)[1].lower()
     if ending not in WRITERS:
         raise click.UsageError(f"-o {printable(output or '', 60)!r}: known endings are {', '.join(WRITERS)}")
+    threads = threads or processors()
     texture = find_texture(texture_name)
     photo = read_photo(file, max_pixels)
     rows, columns = photo.values.shape
@@ -87,10 +88,10 @@ def draw(
         least = math.floor(OUTLINE_LENGTH * max(rows, columns) + 0.5)
         choice = OutlineChoice(pen or OUTLINE_PEN_PT, pen is not None, OUTLINE_STRENGTH, least)
     with progress(5, "draw", quiet) as advance:
-        edges, reduced = drawing.represented(photo, advance)
+        edges, reduced = drawing.represented(photo, threads, advance)
         if verbose:
             options = click.get_current_context().params
-            for line in _chain(file, output, ending, options, reduced, choice, (rows, columns)):
+            for line in _chain(file, output, ending, options, choice, (rows, columns)):
                 click.echo(line, err=True)
         if ending == ".penink":
             own = "." in texture_name or "/" in texture_name
@@ -100,7 +101,6 @@ def draw(
             )  # fmt: skip
             _write_illustration(output, Illustration(width, height, (layer,)))
             return
-        threads = threads or processors()
         outlined = drawing.outlined(edges, width, height, choice) if choice else None
         grey = drawing.enlarged(reduced, edges, drawing.grey_size(width, rows / columns), threads)
         advance(1)
@@ -181,7 +181,7 @@ WRITERS: dict[str, Callable[[str | None, Sequence[Strokes]], None]] = {
 
 
 def _chain(
-    file: str | None, output: str | None, ending: str, options: dict[str, Any], reduced: GreyImage,
+    file: str | None, output: str | None, ending: str, options: dict[str, Any],
     choice: OutlineChoice | None, shape: tuple[int, int],
 ) -> list[str]:  # fmt: skip
     """The filters whose chain gives the same bytes, as one would type them."""
@@ -189,7 +189,6 @@ def _chain(
 
     photo = shlex.quote(file or "-")
     size = grey_size(options["width"], shape[0] / shape[1])
-    rows, columns = reduced.values.shape
     width = f"--width {options['width']!r}"
     pen = "" if options["pen"] is None else f" --pen {options['pen']!r}"
     blast = f"penink blast -e e.json --texture {shlex.quote(options['texture_name'])} {width}{pen}"
@@ -205,7 +204,7 @@ def _chain(
         blast += " --ink outlines.jsonl"
         names += " outlines.jsonl"
     lines.append(
-        f"penink extract-samples -e e.json {photo} | penink reduce -e e.json --size {columns}x{rows} | "
+        f"penink extract-samples -e e.json {photo} | penink reduce -e e.json --auto --photo {photo} | "
         f"penink enlarge -e e.json --size {size[0]}x{size[1]} --soften | {blast} -o hatching.jsonl"
     )
     command = {".svg": "to-svg", ".pdf": "to-pdf", ".png": "to-png"}.get(ending, "to-ps")

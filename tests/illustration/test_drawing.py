@@ -1,0 +1,172 @@
+"""render, draw and separate, as processes: the same bytes as the chain, whatever the form of the illustration."""
+
+from __future__ import annotations
+
+import io
+import json
+import shlex
+import subprocess
+import sys
+import zipfile
+
+import jsonschema
+import numpy as np
+import pytest
+from PIL import Image
+from scipy.ndimage import gaussian_filter
+
+from tests.conftest import ROOT, environment
+
+
+def strokes(text: bytes) -> list[dict]:
+    return [json.loads(line) for line in text.splitlines()]
+
+
+def ran(done) -> bytes:
+    assert done.returncode == 0 and not done.stderr, done.stderr
+    return done.stdout
+
+
+@pytest.fixture(scope="module")
+def photo(tmp_path_factory):
+    """A small photograph: a disc on a gradient, blurred as a camera would."""
+    y, x = np.mgrid[0:120, 0:160] + 0.5
+    grey = np.where(np.hypot(x - 70, y - 60) < 35, 0.25 + 0.002 * y, 0.9 - 0.002 * x)
+    path = tmp_path_factory.mktemp("photo") / "disc.png"
+    Image.fromarray(np.uint8(gaussian_filter(grey, 0.7) * 255)).save(path)
+    return path
+
+
+def test_packed_and_loose_give_the_same_strokes_and_a_size_of_ones_own(penink, loose, tmp_path):
+    packed = ran(penink("pack", loose))
+    first = ran(penink("render", loose, "--width", "2in"))
+    assert ran(penink("render", "--width", "144", "--threads", 1, input=packed)) == first
+    with zipfile.ZipFile(io.BytesIO(packed)) as z:
+        z.extractall(tmp_path / "out")
+    assert ran(penink("render", tmp_path / "out" / "illustration.json", "--scale", 1.5)) == first
+    head = strokes(first)[0]
+    assert (head["width"], head["height"]) == (144, 96)
+
+
+def test_one_layer_alone_is_what_it_is_among_the_others(penink, loose):
+    every = strokes(ran(penink("render", loose)))
+    shade = strokes(ran(penink("render", loose, "--layer", "shade")))
+    other = strokes(ran(penink("render", loose, "--layer", 2)))
+    assert shade[0]["layer"] == "shade" and shade[0]["texture"] == "parallel"
+    assert shade[1:] + other[1:] == every[1:]
+    done = penink("render", loose, "--layer", "nobody")
+    assert done.returncode == 1 and b"there are 1 shade, 2" in done.stderr
+
+
+def test_the_manifest_written_obeys_its_schema(penink, loose):
+    schema = json.loads((ROOT / "penink_cli/formats/schemas/illustration.schema.json").read_text())
+    jsonschema.validate(json.loads(loose.read_text()), schema)
+    with zipfile.ZipFile(io.BytesIO(ran(penink("pack", loose)))) as z:
+        jsonschema.validate(json.loads(z.read("illustration.json")), schema)
+
+
+REJECTED = [
+    ({"width": 0}, "width is 0"),
+    ({"width": True}, "width is true"),
+    ({"layers": []}, "0 layers; 1 to 64"),
+    ({"layers": [3]}, "layer 0 is 3"),
+    ({"layers": [{}]}, "samples"),
+    ({"layers": [{"samples": ""}]}, "relative"),
+    ({"layers": [{"samples": "/etc/passwd"}]}, "relative"),
+    ({"layers": [{"samples": "none.pgm"}]}, "No such file"),
+    ({"layers": [{"samples": "two.illustration.json"}]}, "layer 0: samples"),
+    ({"layers": [{"samples": "square.pgm", "edges": "square.pgm"}]}, "layer 0: edges"),
+    ({"layers": [{"samples": "square.pgm", "texture": "velvet"}]}, "no texture velvet"),
+    ({"layers": [{"samples": "square.pgm", "rule": "worst"}]}, "known are best"),
+    ({"layers": [{"samples": "square.pgm", "pen": 0}]}, "pen is 0"),
+    ({"layers": [{"samples": "square.pgm", "levels": 1}]}, "levels is 1"),
+    ({"layers": [{"samples": "square.pgm", "seed": 1.5}]}, "seed is 1.5"),
+    ({"layers": [{"samples": "square.pgm", "outline": True}]}, "outline is true"),
+    ({"layers": [{"samples": "square.pgm", "outline": {"even": 1}}]}, "even is 1"),
+    ({"layers": [{"samples": "square.pgm", "outline": {"regions": [[1]]}}]}, "region 0"),
+]
+
+
+def test_bad_manifests_are_refused(loose):
+    from penink_cli.commands.inputs import read_illustration
+    from penink_cli.errors import PeninkError
+
+    good = json.loads(loose.read_text())
+    for change, reason in REJECTED:
+        loose.write_text(json.dumps({**good, **change}))
+        with pytest.raises(PeninkError) as raised:
+            read_illustration(str(loose), 10**6)
+        assert reason in str(raised.value) and str(raised.value).startswith(str(loose)), (change, str(raised.value))
+
+
+def test_draw_gives_the_bytes_of_the_chain_it_prints(penink, photo, tmp_path):
+    done = penink("draw", photo, "--width", "2in", "--verbose", "-o", "drawn.eps", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    direct = (tmp_path / "drawn.eps").read_bytes()
+    assert ran(penink("draw", photo, "--width", "2in", "--threads", 1)) == direct
+    chain = f'penink() {{ {shlex.quote(sys.executable)} -m penink_cli "$@"; }}\nset -euo pipefail\n'
+    chain += done.stderr.decode().replace("drawn.eps", "chained.eps")
+    assert chain.count("penink ") >= 6
+    again = subprocess.run(["bash", "-c", chain], cwd=tmp_path, env=environment(), capture_output=True, check=False)
+    assert again.returncode == 0 and not again.stderr, again.stderr
+    assert (tmp_path / "chained.eps").read_bytes() == direct
+
+
+def test_the_ending_tells_what_is_drawn(penink, photo, tmp_path):
+    begins = {"svg": b"<?xml", "pdf": b"%PDF-", "png": b"\x89PNG", "jsonl": b'{"format"', "penink": b"PK\x03\x04"}
+    for ending, magic in begins.items():
+        path = tmp_path / f"d.{ending}"
+        ran(penink("draw", photo, "--width", "1in", "--texture", "parallel", "-o", path))
+        assert path.read_bytes().startswith(magic)
+    assert strokes(ran(penink("render", tmp_path / "d.penink")))[0]["width"] == 72
+    done = penink("draw", photo, "-o", tmp_path / "d.doc")
+    assert done.returncode == 2 and b"known endings" in done.stderr
+
+
+def test_a_drawing_has_the_tone_of_its_photo_at_every_size(penink, photo, ghostscript, tmp_path):
+    ran(penink("draw", photo, "--width", "1in", "-o", tmp_path / "d.penink"))
+    grey = np.asarray(Image.open(photo), dtype=float) / 255
+    for width in (1.5, 4):
+        lines = ran(penink("render", tmp_path / "d.penink", "--width", f"{width}in"))
+        drawn = ghostscript(ran(penink("to-ps", input=lines)), dpi=600, antialias=False)
+        target = np.asarray(Image.fromarray(np.float32(grey)).resize(drawn.shape[::-1], Image.BILINEAR))
+        error = gaussian_filter(drawn - target, 600 / 16)
+        assert np.sqrt((error**2).mean()) < 0.03
+        assert abs(error.mean()) < 0.01
+
+
+@pytest.mark.parametrize("choice", [["--mask", "mask.png"], ["--grey", "0,0.5"], ["--point", "70,60", "-e", "e.json"]])
+def test_overlays_add_up_to_the_photo(penink, photo, tmp_path, choice):
+    y, x = np.mgrid[0:120, 0:160]
+    Image.fromarray(np.uint8(np.clip(x * 2, 0, 255))).save(tmp_path / "mask.png")
+    ran(penink("detect-edges", photo, "-o", tmp_path / "e.json"))
+    one = ran(penink("separate", photo, *choice, cwd=tmp_path))
+    other = ran(penink("separate", photo, *choice, "--invert", cwd=tmp_path))
+    tones = [255 - np.asarray(Image.open(io.BytesIO(part)), dtype=int) for part in (one, other)]
+    assert np.array_equal(tones[0] + tones[1], 255 - np.asarray(Image.open(photo), dtype=int))
+    assert all((tone > 0).any() for tone in tones)
+    if "--mask" not in choice:
+        disc = np.hypot(x + 0.5 - 70, y + 0.5 - 60)
+        assert (tones[0][disc < 33] > 0).all() and (tones[0][disc > 37] == 0).all()
+
+
+def test_layers_that_share_the_page_add_up(penink, photo, tmp_path, ghostscript):
+    """Two half-tone overlays of everything draw as dark as one whole layer, not darker and not lighter."""
+    Image.fromarray(np.full((120, 160), 128, np.uint8)).save(tmp_path / "half.png")
+    for name, invert in (("a", []), ("b", ["--invert"])):
+        part = tmp_path / f"{name}.pgm"
+        ran(penink("separate", photo, "--mask", tmp_path / "half.png", *invert, "-o", part))
+    layers = [{"samples": "a.pgm", "texture": "parallel"}, {"samples": "b.pgm", "texture": "stipple"}]
+    manifest = {"format": "penink-illustration", "version": 1, "width": 216, "height": 162, "layers": layers}
+    (tmp_path / "two.json").write_text(json.dumps(manifest))
+    lines = ran(penink("render", tmp_path / "two.json"))
+    drawn = ghostscript(ran(penink("to-ps", input=lines)), dpi=600, antialias=False)
+    grey = np.asarray(Image.open(photo).resize(drawn.shape[::-1], Image.BILINEAR), dtype=float) / 255
+    error = gaussian_filter(drawn - grey, 600 / 16)
+    assert abs(error.mean()) < 0.015
+    assert np.sqrt((error**2).mean()) < 0.04
+
+
+def test_separate_needs_one_choice(penink, photo):
+    for arguments in ([], ["--mask", "m.png", "--grey", "0,1"], ["--point", "1,1"], ["--grey", "0.5,0.5"]):
+        assert penink("separate", photo, *arguments).returncode == 2
