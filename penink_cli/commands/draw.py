@@ -19,7 +19,7 @@ from penink_cli.streams import writing
 from penink_cli.texture_options import find_texture, texture_option
 
 if TYPE_CHECKING:
-    from penink_cli.model import GreyImage, Illustration, OutlineChoice, Strokes
+    from penink_cli.model import Illustration, OutlineChoice, Strokes
 
 OUTLINE_PEN_PT = 0.7
 OUTLINE_STRENGTH = 0.2  # the grey step that is worth an outline
