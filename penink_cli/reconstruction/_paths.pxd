@@ -13,7 +13,7 @@ cdef class Scene:
     cdef int gw, gh
     cdef int* cell_start
     cdef int* cell_edge
-    cdef int n_crowded
+    cdef int n_crowded, most
     cdef int* crowded
     cdef int* fine_start
     cdef int* fine_edge

@@ -14,6 +14,7 @@ one test replaces "within the sector" and prunes nearly all bends of a smooth ch
 import cython
 from cython.cimports.libc.math import floor, sqrt
 from cython.cimports.libc.stdlib import free, malloc, realloc
+from cython.cimports.libc.string import memmove
 from cython.cimports.penink_cli.arrangement._predicates import orient
 
 COMPILED = cython.compiled
@@ -125,14 +126,16 @@ class Scene:
         entries = np.empty(max(1, bucket(self)), np.intc)
         self.cell_edge = ints(entries)
         fill_buckets(self)
-        crowds = np.full(self.gw * self.gh, -1, np.intc)
-        self.crowded = ints(crowds)
-        count_crowds(self)
-        fine_start = np.zeros(self.n_crowded * FINE * FINE + 1, np.intc)
-        self.fine_start = ints(fine_start)
-        fine_entries = np.empty(max(1, refine(self, False)), np.intc)
-        self.fine_edge = ints(fine_entries)
-        refine(self, True)
+        if self.most >= CROWD:  # rare
+            crowded = np.full(self.gw * self.gh, -1, np.intc)
+            self.crowded = ints(crowded)
+            count_crowds(self)
+            fine_start = np.zeros(self.n_crowded * FINE * FINE + 1, np.intc)
+            self.fine_start = ints(fine_start)
+            fine_entries = np.empty(max(1, refine(self, False)), np.intc)
+            self.fine_edge = ints(fine_entries)
+            refine(self, True)
+            self.arrays += [crowded, fine_start, fine_entries]
         nodes = np.empty((3, 2 * self.n_vertices), np.intc)
         self.node_vertex = ints(nodes[0])
         self.node_low = ints(nodes[1])
@@ -149,8 +152,7 @@ class Scene:
         bucket_nodes(self)
         arc_start = np.zeros(self.n_nodes + 1, np.intc)
         self.arc_start = ints(arc_start)
-        self.arrays += [start, entries, crowds, fine_start, fine_entries, nodes, star_start, star]
-        self.arrays += [node_start, node_cell, arc_start]
+        self.arrays += [start, entries, nodes, star_start, star, node_start, node_cell, arc_start]
         with cython.nogil:
             find_arcs(self)
 
@@ -362,6 +364,8 @@ def bucket(scene: Scene) -> cython.int:
         enter(scene, e, False)
     for k in range(scene.gw * scene.gh + 1):
         n = scene.cell_start[k]
+        if n > scene.most:
+            scene.most = n
         scene.cell_start[k] = total
         total += n
     return total
@@ -371,11 +375,10 @@ def bucket(scene: Scene) -> cython.int:
 def fill_buckets(scene: Scene) -> cython.void:
     """Enter each edge into its cells."""
     e: cython.int
-    k: cython.int
     for e in range(scene.n_edges):
         enter(scene, e, True)
-    for k in range(scene.gw * scene.gh, 0, -1):
-        scene.cell_start[k] = scene.cell_start[k - 1]
+    # Filling has moved each start to the start of the next cell.
+    memmove(scene.cell_start + 1, scene.cell_start, scene.gw * scene.gh * cython.sizeof(cython.int))
     scene.cell_start[0] = 0
 
 
@@ -567,8 +570,7 @@ def bucket_nodes(scene: Scene) -> cython.void:
         k = home(scene, n)
         scene.node_cell[scene.node_cell_start[k]] = n
         scene.node_cell_start[k] += 1
-    for k in range(scene.gw * scene.gh, 0, -1):
-        scene.node_cell_start[k] = scene.node_cell_start[k - 1]
+    memmove(scene.node_cell_start + 1, scene.node_cell_start, scene.gw * scene.gh * cython.sizeof(cython.int))
     scene.node_cell_start[0] = 0
 
 
@@ -673,7 +675,7 @@ def taut(scene: Scene, node: cython.int, u: cython.int) -> cython.bint:
     v: cython.int = scene.node_vertex[node]
     a: cython.int = scene.node_low[node]
     b: cython.int = scene.node_high[node]
-    if a == b:
+    if a == b or u == a or u == b:  # along an edge of its own: the commonest tie by far, and dear to decide exactly
         return True
     return (
         orient(scene.vx[v], scene.vy[v], scene.vx[a], scene.vy[a], scene.vx[u], scene.vy[u])
