@@ -74,7 +74,7 @@ def draw(
     from penink_cli.model import Illustration, Layer, OutlineChoice
     from penink_cli.progress import progress
 
-    ending = ".ps" if output is None or output == "-" else os.path.splitext(output)[1].lower()
+    ending = os.path.splitext(output or "-")[1].lower() or ".ps"  # a FIFO or device has no ending
     if ending not in WRITERS:
         raise click.UsageError(f"-o {printable(output or '', 60)!r}: known endings are {', '.join(WRITERS)}")
     threads = threads or processors()

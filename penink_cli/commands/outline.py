@@ -7,9 +7,8 @@ from typing import Any
 import click
 
 from penink_cli.commands.inputs import read_edges
-from penink_cli.errors import FormatError
 from penink_cli.options import LENGTH, Finite, filter_options
-from penink_cli.streams import source_name, writing
+from penink_cli.streams import writing
 
 
 class Point(click.ParamType):
@@ -78,9 +77,8 @@ def outline(
     from penink_cli.formats import strokes
     from penink_cli.model import OutlineChoice
 
-    edges = read_edges(file)
-    if edges is None:
-        raise FormatError("no edges", source_name(file))
+    edges = read_edges(file or "-")
+    assert edges is not None  # which it is only where no file is named
     height = width * edges.height / edges.width
     check_size(width, height)
     choice = OutlineChoice(

@@ -36,6 +36,13 @@ CALLS = {
     "to-ps": Call("photo.strokes.jsonl"),
     "to-svg": Call("photo.strokes.jsonl"),
     "to-pdf": Call("photo.strokes.jsonl"),
+    "to-pgm": Call("photo.strokes.jsonl", ("--dpi", "100")),
+    "to-png": Call("photo.strokes.jsonl", ("--dpi", "100")),
+    "show-edges": Call("photo.png", ("-e", "photo.edges.json")),
+    "separate": Call("photo.png", ("--grey", "0,0.5")),
+    "outline": Call("photo.edges.json", ("--width", "0.3in")),
+    "render": Call("photo.illustration.json", ("--scale", "1")),
+    "draw": Call("photo.png", ("--width", "0.3in", "--texture", "crosshatch")),
     "pack": Call("photo.illustration.json"),
 }
 

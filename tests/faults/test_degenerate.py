@@ -83,7 +83,7 @@ def checked(name: str, out: bytes) -> None:
 
         strokes.read(io.BytesIO(out), name)
     else:
-        assert out.startswith((b"%!PS", b"%PDF", b"<?xml", b"<svg", b"<!", b"PK")), out[:20]
+        assert out.startswith((b"%!PS", b"%PDF", b"<?xml", b"<svg", b"<!", b"PK", b"\x89PNG")), out[:20]
 
 
 def words(name: str, folder: Path) -> list[str]:

@@ -43,7 +43,7 @@ def expected(server: ForkServer, inputs: Path) -> dict[str, bytes]:
 
 
 def test_every_subcommand_is_under_test():
-    assert set(CALLS) == set(SUBCOMMANDS)
+    assert set(CALLS) == set(SUBCOMMANDS) - {"completion"}  # which is no filter: it prints a few words
 
 
 @readers
@@ -72,10 +72,11 @@ def test_a_file_of_that_name_holds_the_same_and_nothing_else_is_left(name, serve
 @readers
 def test_the_output_may_be_the_input(name, server, inputs, expected, tmp_path):
     shutil.copytree(inputs, tmp_path, dirs_exist_ok=True)
-    both = tmp_path / CALLS[name].reads
+    both = tmp_path / "both"
+    (tmp_path / CALLS[name].reads).rename(both)
     done = server.run(*arguments(name, inputs, by_name=False), both, "-o", both)
     assert (done.status, done.err) == (0, b"")
-    assert both.read_bytes() == expected[name] and sorted(os.listdir(tmp_path)) == sorted(os.listdir(inputs))
+    assert both.read_bytes() == expected[name] and len(os.listdir(tmp_path)) == len(os.listdir(inputs))
 
 
 @every
