@@ -41,7 +41,7 @@ def write(
     unit = max(1.0, max(page.width, page.height) / MOST)
     if unit > 1:
         content.insert(0, b"%.9f 0 0 %.9f 0 0 cm\n" % (1 / unit, 1 / unit))
-    stream = pydyf.Stream([zlib.compress(b"".join(content), 9)], {"Filter": "/FlateDecode"})
+    stream = pydyf.Stream([zlib.compress(b"".join(content), 6)], {"Filter": "/FlateDecode"})
     document.add_object(stream)
     leaf = {
         "Type": "/Page",
