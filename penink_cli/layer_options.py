@@ -126,11 +126,18 @@ def read_layers(files: Sequence[str]) -> list[Strokes]:
     return layers
 
 
-def for_a_pen(layers: Sequence[Strokes], join: float, speed: float | None, verbose: bool) -> list[Strokes]:
+def for_a_pen(
+    layers: Sequence[Strokes], join: float, speed: float | None, verbose: bool, quiet: bool
+) -> list[Strokes]:
     """Each layer ordered, ends that meet joined; reported on standard error if asked for."""
+    from penink_cli.progress import progress
     from penink_cli.travel.order import joined, ordered
 
-    result = [joined(ordered(layer), join) for layer in layers]
+    result = []
+    with progress(sum(map(len, layers)), "order", quiet) as advance:
+        for layer in layers:
+            result.append(joined(ordered(layer), join))
+            advance(len(layer))
     report_travel(layers, result, speed, verbose)
     return result
 

@@ -1,6 +1,6 @@
-# penink.mk: pattern rules from any NAME.png, NAME.jpg or NAME.pgm to NAME.ps and NAME.preview.png.
+# penink.mk: pattern rules from any NAME.png, NAME.jpg or NAME.pgm to NAME.ps, .svg, .pdf and .preview.png.
 #
-# Include it in a Makefile of your own and ask for NAME.ps. Each stage writes a file, so that make -j
+# Include it in a Makefile of your own and ask for NAME.ps, NAME.svg or NAME.pdf. Each stage writes a file, so that make -j
 # works and a changed option remakes only what follows from it:
 #
 #   NAME.edges.json   NAME.samples.pgm   NAME.reduced.pgm   NAME.grey.pgm   NAME.strokes.jsonl   NAME.ps
@@ -14,11 +14,13 @@ REDUCE  ?= --factor 4
 ENLARGE ?= --scale 8 --soften
 BLAST   ?= --texture crosshatch --width 4in
 TO_PS   ?=
+TO_SVG  ?=
+TO_PDF  ?=
 PREVIEW_DPI ?= 150
 
 .DELETE_ON_ERROR:
-.PRECIOUS: %.edges.json %.samples.pgm %.reduced.pgm %.grey.pgm %.strokes.jsonl %.ps
-.PRECIOUS: %.detect.options %.extract.options %.reduce.options %.enlarge.options %.blast.options %.to-ps.options
+.PRECIOUS: %.edges.json %.samples.pgm %.reduced.pgm %.grey.pgm %.strokes.jsonl %.ps %.svg %.pdf
+.PRECIOUS: %.detect.options %.extract.options %.reduce.options %.enlarge.options %.blast.options %.to-ps.options %.to-svg.options %.to-pdf.options
 
 # NAME.STAGE.options holds the options a stage was last run with; it gets a new date only when they
 # change, so depending on it is depending on the options.
@@ -38,6 +40,10 @@ PENINK_FORCE:
 	$(call penink-note,BLAST)
 %.to-ps.options: PENINK_FORCE
 	$(call penink-note,TO_PS)
+%.to-svg.options: PENINK_FORCE
+	$(call penink-note,TO_SVG)
+%.to-pdf.options: PENINK_FORCE
+	$(call penink-note,TO_PDF)
 
 penink-detect  = $(PENINK) detect-edges $(call penink-options,DETECT) -o $@ $<
 penink-extract = $(PENINK) extract-samples $(call penink-options,EXTRACT) -e $*.edges.json -o $@ $<
@@ -67,6 +73,12 @@ penink-extract = $(PENINK) extract-samples $(call penink-options,EXTRACT) -e $*.
 
 %.ps: %.strokes.jsonl %.to-ps.options
 	$(PENINK) to-ps $(call penink-options,TO_PS) -o $@ $<
+
+%.svg: %.strokes.jsonl %.to-svg.options
+	$(PENINK) to-svg $(call penink-options,TO_SVG) -o $@ $<
+
+%.pdf: %.strokes.jsonl %.to-pdf.options
+	$(PENINK) to-pdf $(call penink-options,TO_PDF) -o $@ $<
 
 %.preview.png: %.ps
 	gs -q -dSAFER -dBATCH -dNOPAUSE -dEPSCrop -dGraphicsAlphaBits=4 -sDEVICE=pnggray -r$(PREVIEW_DPI) -sOutputFile=$@ $<

@@ -37,6 +37,7 @@ def to_svg(
     speed: float | None,
     verbose: bool,
     output: str | None,
+    quiet: bool,
     **_: Any,
 ) -> None:
     """Write strokes as SVG, for drawing programs, the web and pen plotters.
@@ -55,7 +56,7 @@ def to_svg(
     layers = read_layers(files)
     page = lay_out(layers, paper, margin, landscape)
     if order:
-        layers = for_a_pen(layers, join, speed, verbose)
+        layers = for_a_pen(layers, join, speed, verbose, quiet)
     else:
         report_travel(layers, layers, speed, verbose)
     with writing(output, binary=False) as out:

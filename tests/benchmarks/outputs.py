@@ -58,7 +58,7 @@ def outputs(folder, drawing, name="drawing"):
 
 
 def renderers(folder):
-    print("1. Agreement after a low-pass of 1/16 in, RMS % of full scale; crosshatch of 4000 strokes, 0.4 pt, 4 x 4 in")
+    print("1. Agreement after a low-pass of 1/16 in, RMS %; crosshatch of 4000 strokes, 0.4 pt, 4 x 4 in")
     drawing = crosshatch(4000, 288)
     outputs(folder, drawing)
     dpi = 600
@@ -87,7 +87,7 @@ def renderers(folder):
         theirs = ghostscript(folder / "drawing.ps", low, True, f"-g{4 * low}x{4 * low}")
         print(f"   to-pgm against Ghostscript, anti-aliased, {low} dpi: {difference(coarse, theirs, low):.2f}")
     usual = ghostscript(folder / "drawing.ps", dpi, False, size)
-    print("   Renderers that ink every pixel, or subpixel, that a stroke touches are darker by that, at any size of file:")
+    print("   Renderers that ink every pixel, or subpixel, that a stroke touches are darker by that:")
     print(f"   Ghostscript with its usual fill adjustment, {dpi} dpi: {difference(usual, exact, dpi):.2f}")
     if shutil.which("pdftoppm"):
         for fine in (dpi, 4 * dpi):
@@ -114,8 +114,8 @@ def size(folder):
         file = outputs(folder, drawing)
         plain, packed = (folder / "drawing.ps").stat().st_size, len(run(*penink("to-ps", "--compress", file)))
         each = [(folder / f"drawing.{kind}").stat().st_size / 15000 for kind in ("svg", "pdf")]
-        print(f"   crosshatch of 15000 strokes on {side / 72:g} in: PostScript {plain / 15000:.1f} plain, {packed / 15000:.1f}"
-              f" compressed; SVG {each[0]:.0f}, PDF {each[1]:.0f}")  # fmt: skip
+        print(f"   crosshatch of 15000 strokes on {side / 72:g} in: PostScript {plain / 15000:.1f} plain,"
+              f" {packed / 15000:.1f} compressed; SVG {each[0]:.0f}, PDF {each[1]:.0f}")  # fmt: skip
         naive = f"1 setlinecap 1 setlinejoin 1 -1 scale 0 -{side} translate\n" + "".join(
             "{} {} moveto {} {} {} {} {} {} curveto {} setlinewidth stroke\n".format(*drawing[i].ravel(), w)
             for i, w in enumerate(drawing.widths)
@@ -130,7 +130,8 @@ def size(folder):
         strokes_format.write(out, strokes_of(places, 0.8, 1440, 1440))
     for kind in ("ps", "svg", "pdf", "pgm"):
         seconds, _ = cpu(*penink(f"to-{kind}", folder / "dots.jsonl", "-o", folder / f"dots.{kind}"))
-        print(f"   300000 dots, to-{kind}: {seconds:.2f} s of CPU, {(folder / f'dots.{kind}').stat().st_size / 3e5:.1f} bytes each")
+        each = (folder / f"dots.{kind}").stat().st_size / 3e5
+        print(f"   300000 dots, to-{kind}: {seconds:.2f} s of CPU, {each:.1f} bytes each")
 
 
 def _ink_box(picture, dpi):
@@ -147,10 +148,10 @@ def inclusion(folder):
     shutil.copy(folder / "frame.ps", folder / "frame.eps")
     if shutil.which("latex") and shutil.which("dvips"):
         (folder / "t.tex").write_text(
-            r"\documentclass{article}\usepackage[dvips]{graphicx}\textwidth480bp\textheight380bp\oddsidemargin-1in\topmargin-1in"
-            r"\headheight0pt\headsep0pt\topskip0pt\parindent0pt\pagestyle{empty}\begin{document}\special{papersize=500bp,400bp}"
-            r"\vbox to 0pt{\hbox{\hskip 50bp\includegraphics{frame.eps}\hskip 20bp\includegraphics[width=72bp]{frame.eps}}"
-            r"\vss}\end{document}"
+            r"\documentclass{article}\usepackage[dvips]{graphicx}\textwidth480bp\textheight380bp\oddsidemargin-1in"
+            r"\topmargin-1in\headheight0pt\headsep0pt\topskip0pt\parindent0pt\pagestyle{empty}"
+            r"\begin{document}\special{papersize=500bp,400bp}\vbox to 0pt{\hbox{\hskip 50bp\includegraphics{frame.eps}"
+            r"\hskip 20bp\includegraphics[width=72bp]{frame.eps}}\vss}\end{document}"
         )
         run("latex", "-interaction=nonstopmode", "t.tex", cwd=folder)
         run("dvips", "-q", "-o", "t.ps", "t.dvi", cwd=folder)
@@ -158,19 +159,22 @@ def inclusion(folder):
         picture = ghostscript(folder / "t.pdf", 288)
         box = _ink_box(picture[:, : 345 * 4], 288)
         small = _ink_box(np.where(np.arange(picture.shape[1]) < 345 * 4, 255, picture), 288)
-        print(f"   LaTeX: {box[2] - box[0]:.2f} x {box[3] - box[1]:.2f} wide and high (270 x 198 drawn), {box[0]:.2f} from the left"
-              f" (59 drawn); at a quarter {small[2] - small[0]:.2f} x {small[3] - small[1]:.2f} (67.5 x 49.5)")  # fmt: skip
+        print(f"   LaTeX: {box[2] - box[0]:.2f} x {box[3] - box[1]:.2f} wide and high (270 x 198 drawn), {box[0]:.2f}"
+              f" from the left (59 drawn); at a quarter {small[2] - small[0]:.2f} x {small[3] - small[1]:.2f}"
+              " (67.5 x 49.5)")  # fmt: skip
     else:
         print("   latex is not installed: left out")
     if shutil.which("inkscape"):
-        for kind in ("eps", "pdf", "svg"):
+        # Without a display Inkscape cannot open EPS; with one it does so by this conversion.
+        run("ps2pdf", "-dEPSCrop", "frame.eps", "frame-eps.pdf", cwd=folder)
+        for kind, source in (("eps", "frame-eps.pdf"), ("pdf", "frame.pdf"), ("svg", "frame.svg")):
             target = folder / f"imported-{kind}.png"
             run("inkscape", "--export-dpi=288", "--export-background=white", "--export-area-page",
-                f"--export-filename={target}", folder / f"frame.{kind}")  # fmt: skip
+                f"--export-filename={target}", folder / source)  # fmt: skip
             picture = pixels(target.read_bytes())
             box = _ink_box(picture, 288)
-            print(f"   Inkscape imports {kind}: page {picture.shape[1] / 4:.2f} x {picture.shape[0] / 4:.2f} (288 x 216), ink"
-                  f" {' '.join(f'{v:.2f}' for v in box)} (9 9 279 207)")  # fmt: skip
+            print(f"   Inkscape imports {kind}: page {picture.shape[1] / 4:.2f} x {picture.shape[0] / 4:.2f} (288 x 216),"
+                  f" ink {' '.join(f'{v:.2f}' for v in box)} (9 9 279 207)")  # fmt: skip
     else:
         print("   inkscape is not installed: left out")
 
@@ -204,7 +208,8 @@ def plotters(folder):
     print("4. Pen plotters")
     python = vpype_python()
     vpype = str(Path(python).with_name("vpype"))
-    several = [crosshatch(500, 288, seed=1), strokes_of([[[9, 9]], [[20, 20], [30, 30], [40, 20], [50, 60]]], 1, 288, 288)]
+    few = strokes_of([[[9, 9]], [[20, 20], [30, 30], [40, 20], [50, 60]]], 1, 288, 288)
+    several = [crosshatch(500, 288, seed=1), few]
     files = []
     for i, layer in enumerate(several):
         files.append(folder / f"{i}.strokes.jsonl")
@@ -215,25 +220,25 @@ def plotters(folder):
     from penink_cli.travel.order import drawn_length
 
     for (number, name, count, length), layer in zip(got["layers"], several):
-        print(f"   vpype reads layer {number} ({name}): {count} paths of {len(layer)}, {length:.1f} pt long of {drawn_length(layer):.1f}")
+        whole = f"{count} paths of {len(layer)}, {length:.1f} pt long of {drawn_length(layer):.1f}"
+        print(f"   vpype reads layer {number} ({name}): {whole}")
     outputs(folder, crosshatch(15000, 576))
     shutil.copy(folder / "drawing.strokes.jsonl", folder / "photo.strokes.jsonl")
     pipe = f"'{sys.executable}' -m penink_cli to-svg photo.strokes.jsonl | '{vpype}' read - linesort"
     pipe += " write --device hp7475a --page-size a4 plot.hpgl"
     run("bash", "-e", "-o", "pipefail", "-c", pipe, cwd=folder, env={**os.environ, "PYTHONPATH": str(ROOT)})
-    print(f"   penink to-svg | vpype read - linesort write plot.hpgl: {(folder / 'plot.hpgl').stat().st_size} bytes of HPGL")
-    for count, side, optimisers in ((15000, 576, ("linesort", "two-opt")),):
-        drawing = crosshatch(count, side)
-        outputs(folder, drawing)
-        before = time.process_time()
-        travel = travel_length(ordered(drawing))
-        ours = time.process_time() - before
-        print(f"   {count} strokes, --order: {travel:.0f} pt travelled (unordered {travel_length(drawing):.0f}), {ours:.2f} s of CPU")
-        theirs = json.loads(run(python, "-c", READ, folder / "drawing.svg", *optimisers))
-        for name in optimisers:
-            seconds, far = theirs[name]
-            print(f"   vpype linesort{' --two-opt' if name == 'two-opt' else ''}: {far:.0f} pt, {seconds:.1f} s of CPU;"
-                  f" ours is {travel / far:.2f} of its way in {ours / seconds:.4f} of its time")  # fmt: skip
+    size = (folder / "plot.hpgl").stat().st_size
+    print(f"   penink to-svg | vpype read - linesort write plot.hpgl: {size} bytes of HPGL")
+    drawing = crosshatch(15000, 576)
+    before = time.process_time()
+    travel = travel_length(ordered(drawing))
+    ours = time.process_time() - before
+    was = travel_length(drawing)
+    print(f"   15000 strokes, --order: {travel:.0f} pt travelled (unordered {was:.0f}), {ours:.2f} s CPU", flush=True)
+    for name in ("linesort", "two-opt"):
+        seconds, far = json.loads(run(python, "-c", READ, folder / "drawing.svg", name))[name]
+        print(f"   vpype linesort{' --two-opt' if name == 'two-opt' else ''}: {far:.0f} pt, {seconds:.1f} s of CPU;"
+              f" ours is {travel / far:.2f} of its way in {ours / seconds:.4f} of its time", flush=True)  # fmt: skip
 
 
 def startup(folder):

@@ -110,7 +110,8 @@ def test_the_structuring_conventions_of_an_eps():
     assert "%%BeginObject: (n\\303\\244me \\(2\\)\\012%%EOF)".replace("\\(", "\\050").replace("\\)", "\\051") in lines
     # What an included file must not do, by the EPSF specification.
     forbidden = "banddevice clear cleardictstack copypage erasepage exitserver framedevice grestoreall initclip \
-initgraphics initmatrix quit renderbands setglobal setpagedevice setshared startjob letter a4 statusdict userdict Date"  # fmt: skip
+initgraphics initmatrix quit renderbands setglobal setpagedevice setshared startjob letter a4 \
+statusdict userdict Date"  # fmt: skip
     for word in forbidden.split():
         assert not re.search(rf"\b{word}\b", text), word
 
