@@ -173,8 +173,8 @@ def inclusion(folder):
                 f"--export-filename={target}", folder / source)  # fmt: skip
             picture = pixels(target.read_bytes())
             box = _ink_box(picture, 288)
-            print(f"   Inkscape imports {kind}: page {picture.shape[1] / 4:.2f} x {picture.shape[0] / 4:.2f} (288 x 216),"
-                  f" ink {' '.join(f'{v:.2f}' for v in box)} (9 9 279 207)")  # fmt: skip
+            print(f"   Inkscape imports {kind}: page {picture.shape[1] / 4:.2f} x {picture.shape[0] / 4:.2f} (288x216)"
+                  f", ink {' '.join(f'{v:.2f}' for v in box)} (9 9 279 207)")  # fmt: skip
     else:
         print("   inkscape is not installed: left out")
 
