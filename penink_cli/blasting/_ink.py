@@ -523,8 +523,9 @@ def press(
 ):
     """Change the width of each stroke, one after the other, to where the squared error is least.
 
-    widths: (n,) in and out, subpixels, between lightest and heaviest. The residual is kept up to date to first
-    order only: what a wider stroke newly covers is taken to be as bare as the cells it runs through.
+    widths: (n,) in and out, subpixels, between lightest and heaviest. The residual, whose cells are twice as wide and
+    high as those of counts, is kept up to date to first order only: what a wider stroke newly covers is taken to be as
+    bare as the cells it runs through.
     """
     k: cython.Py_ssize_t
     i: cython.Py_ssize_t
@@ -563,14 +564,16 @@ def press(
                 if x < 0 or y < 0 or x >= counts.shape[1] or y >= counts.shape[0]:
                     fresh[j] = 0.0
                     continue
-                fresh[j] = sqrt(dx * dx + dy * dy) * (1.0 - 0.75 * counts[y, x] * 0.015625) * 0.015625
+                fresh[j] = sqrt(dx * dx + dy * dy) * (1.0 - 0.75 * counts[y, x] * 0.015625) * 0.00390625
+                x >>= 1
+                y >>= 1
                 pull += fresh[j] * residual[y, x]
             for j in range(n):
                 resistance += fresh[j] * fresh[j] * profile[0]
                 for x in range(j + 1, n):
                     dx = mx[x] - mx[j]
                     dy = my[x] - my[j]
-                    d = 0.5 * sqrt(dx * dx + dy * dy)
+                    d = 0.25 * sqrt(dx * dx + dy * dy)
                     if d >= reach:
                         break
                     resistance += 2.0 * fresh[j] * fresh[x] * profile[cython.cast(cython.Py_ssize_t, d)]
@@ -584,7 +587,9 @@ def press(
                 if fresh[j] > 0.0 and (j & 1 or j == n - 1):
                     d = fresh[j] + (fresh[j - 1] if j & 1 else 0.0)
                     d *= change
-                    _splat(residual, guide, kernel, _cell(my[j]), _cell(mx[j]), cython.cast(cython.float, d), step)
+                    x = _cell(mx[j]) >> 1
+                    y = _cell(my[j]) >> 1
+                    _splat(residual, guide, kernel, y, x, cython.cast(cython.float, d), step)
 
 
 def gather(

@@ -45,7 +45,8 @@ class Candidates:
 
 def between_walls(
     cubics: Floats,
-    slack: npt.NDArray[np.bool_],
+    joined: npt.NDArray[np.bool_],
+    longer: bool,
     pen: float,
     painted: float,
     borders: walls.Walls,
@@ -54,23 +55,30 @@ def between_walls(
 ) -> Candidates:
     """Candidates from cubics (n, 4, 2), cut where they cross walls.
 
-    slack: (n, 2) whether the cubic may be made longer at its start and its end to reach a wall.
+    joined: (n, 2) whether another stroke goes on from the cubic's start and its end.
+    longer: whether a cubic may be made longer to reach a wall, where none goes on from it.
     rank: (n,) those of lower rank are tried first.
     """
     n = len(cubics)
+    slack = ~joined & longer
     chord = cubics[:, 3] - cubics[:, 0]
     more = SLACK_PT / np.maximum(np.sqrt((chord * chord).sum(axis=1)), 1.0)
-    longer = curves.blossom(cubics, np.where(slack[:, 0], -more, 0.0), np.where(slack[:, 1], 1.0 + more, 1.0))
-    points, first = np.ascontiguousarray(longer.reshape(-1, 2)), np.arange(n + 1) * 4
+    extended = curves.blossom(cubics, np.where(slack[:, 0], -more, 0.0), np.where(slack[:, 1], 1.0 + more, 1.0))
+    points, first = np.ascontiguousarray(extended.reshape(-1, 2)), np.arange(n + 1) * 4
     pieces = curves.pieces_of(points, first, STEP_PT)
     lines = curves.sample(points, first, pieces)
     extra = [np.where(slack[:, k], more / (1 + more * slack.sum(axis=1)) * pieces, 0.0) for k in (0, 1)]
     parts = walls.cut(borders, lines, np.full(n, painted), (extra[0], extra[1]), sheet.width, sheet.height)
     points, first = curves.cut(points, first, pieces, parts.curve, parts.start, parts.end)
     order = np.argsort(rank[parts.curve], kind="stable")
+    # where another stroke goes on, a short piece is no stub
+    goes_on = joined[parts.curve] & np.column_stack(
+        [parts.start <= 1e-6, parts.end >= pieces[parts.curve] - 1e-6]
+    )
+    bounded = parts.bounded | goes_on[:, 0] | (goes_on[:, 1].astype(np.uint8) << 1)
     pieces = curves.pieces_of(points, first, STEP_PT)
     return Candidates(
-        points, first, pieces, curves.sample(points, first, pieces), np.full(len(first) - 1, pen), parts.bounded,
+        points, first, pieces, curves.sample(points, first, pieces), np.full(len(first) - 1, pen), bounded,
         [part for part in np.array_split(order, BATCHES) if len(part)],
     )  # fmt: skip
 
@@ -82,7 +90,7 @@ def swept(
     hatch = sweep.hatch(sheet, coverage, layer, pen, gain_pt, seed)
     rank = np.random.default_rng([seed, 3]).random(len(hatch.curves))
     painted = sweep.painted_width(layer.angle, pen, gain_pt)
-    return between_walls(hatch.curves, ~hatch.joined, pen, painted, borders, sheet, rank)
+    return between_walls(hatch.curves, hatch.joined, True, pen, painted, borders, sheet, rank)
 
 
 def lattice(
@@ -119,4 +127,4 @@ def lattice(
     uu = half[:, None] * np.array([-1.0, -1 / 3, 1 / 3, 1.0])
     vv = turn[:, None] * uu + bow[:, None] * np.array([-0.5, 0.85, 0.85, -0.5])
     cubics = middle[:, None, :] + uu[..., None] * along + vv[..., None] * across
-    return between_walls(cubics, np.zeros((len(half), 2), bool), pen, painted, borders, sheet, -due)
+    return between_walls(cubics, np.zeros((len(half), 2), bool), False, pen, painted, borders, sheet, -due)

@@ -77,10 +77,11 @@ def hatch_sheet(
                 part.lines, part.widths, part.batches, walls=part.bounded, cost=RUN_COST, caution=FILL_CAUTION,
             )  # fmt: skip
             strokes.append(part.drawn(runs, moved))
-        error = sheet.low_pass(sheet.tone - sheet.ink) / weight
+        error = sheet.error()
         size = float(np.mean(np.square(error, dtype=np.float64)))
         if best is None or size < best[0]:
             best = size, strokes
+        error = sheet.spread(error)
         wanted = wanted + error
         density = density + np.float32(SWEEP_GAIN) * error
     assert best is not None

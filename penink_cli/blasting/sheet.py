@@ -35,6 +35,8 @@ CELL_PT = 0.96
 #: σ of the low-pass of what is due. Narrower than what the eye (and the measure) blurs,
 #: so that tone is right in small things too.
 SIGMA_PT = 2.5
+#: σ of what the eye sees at arm's length, 1/16 inch: errors are measured, and fed back, through this.
+EYE_PT = 4.5
 #: A step of tone (0 … 1) over which ink is not credited.
 STEP = 0.25
 #: Candidates are tried in blocks of this size, those of every second block at the same time,
@@ -46,6 +48,25 @@ def gaussian(sigma: float, radius: int) -> Floats:
     """(2 radius + 1,) weights that sum to 1, the same on every machine."""
     w = np.array([round(math.exp(-0.5 * (k / sigma) ** 2), 9) for k in range(-radius, radius + 1)])
     return w / math.fsum(w)
+
+
+def low_pass_kernel(sigma: float) -> tuple[Cells, Floats]:
+    """A Gaussian of σ cells that sums to 1, (2 r + 1, 2 r + 1), and its values by distance in quarters of a cell."""
+    radius = math.ceil(2.5 * sigma)
+    g = gaussian(sigma, radius)
+    peak = float(g[radius]) ** 2
+    profile = [round(peak * math.exp(-0.5 * (k / 4 / sigma) ** 2), 9) for k in range(4 * radius + 1)]
+    return np.ascontiguousarray(np.outer(g, g).astype(np.float32)), np.array(profile)
+
+
+def halve(values: Cells) -> Cells:
+    """Means of 2 × 2 cells, the last row and column repeated where there is an odd one."""
+    if values.shape[0] & 1:
+        values = np.concatenate([values, values[-1:]])
+    if values.shape[1] & 1:
+        values = np.concatenate([values, values[:, -1:]], axis=1)
+    quarter = np.float32(0.25)
+    return ((values[::2, ::2] + values[1::2, ::2]) + (values[::2, 1::2] + values[1::2, 1::2])) * quarter
 
 
 class Sheet:
@@ -64,16 +85,13 @@ class Sheet:
         self.tone: Cells = resample(tone, self.rows, self.columns).astype(np.float32)
         self.bits = np.zeros((self.rows, self.columns, 8), np.uint8)
         self.counts = np.zeros((self.rows, self.columns), np.uint8)
-        radius = math.ceil(2.5 * SIGMA_PT / CELL_PT)
-        g = gaussian(SIGMA_PT / CELL_PT, radius)
-        self.kernel: Cells = np.ascontiguousarray(np.outer(g, g).astype(np.float32))
-        # the kernel along a stroke, by distance in quarters of a cell
-        peak = float(g[radius]) ** 2
-        self.profile = np.array(
-            [round(peak * math.exp(-0.5 * (k / 4 * CELL_PT / SIGMA_PT) ** 2), 9) for k in range(4 * radius + 1)]
-        )
+        self.kernel, self.profile = low_pass_kernel(SIGMA_PT / CELL_PT)
         self.residual: Cells = np.zeros((self.rows, self.columns), np.float32)
         self.step = STEP
+        # what the eye sees is kept for cells of twice the size
+        self._coarse_tone = halve(self.tone)
+        self._eye, self._eye_profile = low_pass_kernel(EYE_PT / CELL_PT / 2)
+        self._seen_weight = self._gather(np.ones_like(self._coarse_tone), self._coarse_tone, self._eye)
 
     def clear(self) -> None:
         """Take all ink away."""
@@ -85,14 +103,27 @@ class Sheet:
         """Coverage so far (rows, columns), 0 … 1."""
         return self.counts * np.float32(1 / 64)
 
-    def low_pass(self, values: Cells, kernel: Cells | None = None) -> Cells:
-        """`values` blurred by the kernel (G by default), cut off at strong steps of tone, zero outside the frame."""
+    def low_pass(self, values: Cells) -> Cells:
+        """G * values (rows, columns), cut off at strong steps of tone, zero outside the frame."""
+        return self._gather(values, self.tone, self.kernel)
+
+    def error(self) -> Cells:
+        """Tone less ink as the eye sees it: the mean over what lies near on this side of strong steps of tone.
+
+        For cells of twice the size, (⌈rows / 2⌉, ⌈columns / 2⌉).
+        """
+        return self._gather(halve(self.tone - self.ink), self._coarse_tone, self._eye) / self._seen_weight
+
+    def spread(self, error: Cells) -> Cells:
+        """Values for cells of twice the size as values (rows, columns)."""
+        return np.repeat(np.repeat(error, 2, axis=0), 2, axis=1)[: self.rows, : self.columns]
+
+    def _gather(self, values: Cells, guide: Cells, kernel: Cells) -> Cells:
         out = np.empty_like(values)
-        kernel = self.kernel if kernel is None else kernel
-        edges = [*range(0, self.rows, 64), self.rows]
+        edges = [*range(0, len(values), 64), len(values)]
 
         def band(i: int) -> None:
-            _ink.gather(values, self.tone, kernel, self.step, out, edges[i], edges[i + 1])
+            _ink.gather(values, guide, kernel, self.step, out, edges[i], edges[i + 1])
 
         self._each(band, range(len(edges) - 1))
         return out
@@ -178,8 +209,9 @@ class Sheet:
         """Widths (n,) for polylines that are drawn already with `widths`, such that less is due.
 
         Each lies between lightest and heaviest (n,), points: the pressure of the hand on the pen. The ink stays as
-        it is; what is due is kept up to date to first order.
+        it is; the error that the eye sees is reckoned with to first order.
         """
+        residual = self._gather(halve(self.tone - self.ink), self._coarse_tone, self._eye)
         points = np.ascontiguousarray(lines.points * self.scale)
         longest = int(np.diff(lines.first).max()) + 2 if len(widths) else 2
         pressed = np.ascontiguousarray(widths * self.pitch)
@@ -187,7 +219,7 @@ class Sheet:
 
         def run(order: Ints) -> None:
             _ink.press(
-                self.counts, self.residual, self.tone, self.kernel, self.step, self.profile,
+                self.counts, residual, self._coarse_tone, self._eye, self.step, self._eye_profile,
                 points, lines.first, pressed, low, high, order, np.empty((3, longest)),
             )  # fmt: skip
 
@@ -203,7 +235,7 @@ class Sheet:
         hi = np.maximum.reduceat(lines.points, lines.first[:-1]) if len(lines.first) > 1 else np.zeros((0, 2))
         size: float = BLOCK_PT
         if len(lo):
-            reach = float((hi - lo).max()) + 2 * 2.5 * SIGMA_PT + 8.0
+            reach = float((hi - lo).max()) + 2 * 2.5 * EYE_PT + 8.0
             size = max(size, reach)
         return np.floor((lo + hi) / (2 * size)).astype(np.int64)
 

@@ -129,16 +129,15 @@ def blast_tile(
         return _place(sheet, texture, enters, seed, True, pen)
     wanted: Cells = sheet.tone.copy()
     best: tuple[float, list[Strokes]] | None = None
-    weight = sheet.low_pass(np.ones_like(sheet.tone))
     for _ in range(ROUNDS):
         sheet.clear()
         sheet.owe(wanted)
         strokes = _place(sheet, texture, enters, seed, False, pen)
-        error = sheet.low_pass(sheet.tone - sheet.ink) / weight
+        error = sheet.error()
         size = float(np.mean(np.square(error, dtype=np.float64)))
         if best is None or size < best[0]:
             best = size, strokes
-        wanted = wanted + error
+        wanted = wanted + sheet.spread(error)
     assert best is not None
     return best[1]
 

@@ -21,14 +21,19 @@ STRONG, WEAK = 0.22, 0.12
 #: The tone of an edge's side is looked up so far from it, points.
 BESIDE_PT = 1.4
 #: Pieces between walls that are shorter are not drawn.
-SHORTEST_PT = 1.5
+SHORTEST_PT = 0.8
 
 
 @dataclass(frozen=True, eq=False)
 class Walls:
-    """Segments (m, 4), points, and a grid over them: the walls near cell c are items[begin[c] : begin[c + 1]]."""
+    """Segments (m, 4), points, and a grid over them: the walls near cell c are items[begin[c] : begin[c + 1]].
+
+    inside: (m,) how much of half a pen's width a stroke ends before each: all of it at an edge, nothing at the frame,
+    where what reaches over is not seen and what is left out would be missed.
+    """
 
     segments: Floats
+    inside: Floats
     begin: Ints
     items: Ints
     columns: int
@@ -70,6 +75,7 @@ def build(edges: EdgeList | None, sheet: Sheet) -> Walls:
     along = segments[:, 2:] - segments[:, :2]
     n = np.maximum(1, np.ceil(np.abs(along).max(axis=1) / CELL_PT)).astype(np.int64)
     which, k = np.repeat(np.arange(len(n)), n), curves.ramp(n)
+    inside = (which >= 4).astype(np.float64)
     start = segments[which, :2] + along[which] * (k / n[which])[:, None]
     end = segments[which, :2] + along[which] * ((k + 1) / n[which])[:, None]
     segments = np.ascontiguousarray(np.concatenate([start, end], axis=1))
@@ -81,7 +87,7 @@ def build(edges: EdgeList | None, sheet: Sheet) -> Walls:
     cell = (lo[which, 1] + k // wide[which]) * columns + lo[which, 0] + k % wide[which]
     order = np.argsort(cell, kind="stable")
     begin = np.searchsorted(cell[order], np.arange(columns * rows + 1))
-    return Walls(segments, begin.astype(np.int64), np.ascontiguousarray(which[order]), columns, rows)
+    return Walls(segments, inside, begin.astype(np.int64), np.ascontiguousarray(which[order]), columns, rows)
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,27 +116,28 @@ def cut(
     room = max(1024, 2 * n)
     points = np.ascontiguousarray(lines.points)
     while True:
-        who, where, sine = np.empty(room, np.int64), np.empty(room), np.empty(room)
+        who, wall_at, where, sine = np.empty(room, np.int64), np.empty(room, np.int64), np.empty(room), np.empty(room)
         found = _walls.crossings(
             points, lines.first, walls.segments, walls.begin, walls.items, walls.columns, walls.rows,
-            0.0, 0.0, CELL_PT, who, where, sine,
+            0.0, 0.0, CELL_PT, who, wall_at, where, sine,
         )  # fmt: skip
         if found <= room:
             break
         room = found
     order = np.lexsort((where[:found], who[:found]))
     who, where, sine = who[:found][order], where[:found][order], sine[:found][order]
+    inside = walls.inside[wall_at[:found][order]]
     # the same crossing may have been found in two cells, or in two walls that meet there
     again = np.zeros(found, bool)
     again[1:] = (who[1:] == who[:-1]) & (where[1:] - where[:-1] < 1e-6)
-    who, where, sine = who[~again], where[~again], sine[~again]
+    who, where, sine, inside = who[~again], where[~again], sine[~again], inside[~again]
     # interleave: each curve's start, its crossings, its end
     per = np.bincount(who, minlength=n)
     step = np.sqrt(
         (np.diff(points[np.column_stack([lines.first[:-1], lines.first[1:] - 1])], axis=1)[:, 0] ** 2).sum(1)
     )
     step = np.maximum(step / np.maximum(count - 1, 1), 1e-6)
-    margin = np.minimum(0.5 * painted[who] / np.maximum(sine, 0.2), 2 * painted[who]) / step[who]
+    margin = inside * np.minimum(0.5 * painted[who] / np.maximum(sine, 0.2), 2 * painted[who]) / step[who]
     begin = curves.starts(per + 2)
     stop, gap, wall = np.zeros(begin[-1]), np.zeros(begin[-1]), np.ones(begin[-1], np.uint8)
     at = begin[who] + 1 + curves.ramp(per)
