@@ -36,6 +36,7 @@ SUBCOMMANDS = {
     "outline": ("outline", "Turn discontinuity edges into smooth outline strokes."),
     "render": ("render", "Draw an illustration anew for one size and one device."),
     "draw": ("draw", "Turn a photo into a pen-and-ink drawing, the whole chain in one call."),
+    "texture": ("texture", "List, show, make and import stroke textures."),
     "pack": ("pack", "Pack an illustration and its members in one small file."),
     "to-ps": ("to_ps", "Write strokes as PostScript."),
     "to-svg": ("to_svg", "Write strokes as SVG, for drawing programs, the web and pen plotters."),

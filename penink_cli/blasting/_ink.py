@@ -282,8 +282,8 @@ def paint(
 @cython.nogil
 @cython.exceptval(check=False)
 def _gains(
-    bits: cython.uchar[:, :, ::1], counts: cython.uchar[:, ::1], residual: cython.float[:, ::1],
-    profile: cython.double[::1],
+    bits: cython.uchar[:, :, ::1], counts: cython.uchar[:, ::1],
+    residual: cython.float[:, ::1], guide: cython.float[:, ::1], lenience: cython.double, profile: cython.double[::1],
     points: cython.double[:, ::1], p0: cython.Py_ssize_t, p1: cython.Py_ssize_t,
     ox: cython.double, oy: cython.double, width: cython.double, gain: cython.double,
     ink: cython.double[::1], own: cython.double[::1], due: cython.double[::1],
@@ -323,7 +323,7 @@ def _gains(
         y = _cell(my)
         x = 0 if x < 0 else (counts.shape[1] - 1 if x >= counts.shape[1] else x)
         y = 0 if y < 0 else (counts.shape[0] - 1 if y >= counts.shape[0] else y)
-        due[i] = residual[y, x]
+        due[i] = residual[y, x] + lenience * guide[y, x]
         own[i] = 0.0
     # the kernel along the stroke, by distance in quarter cells; pieces are 1/16 … 1 cell or so apart
     for i in range(n):
@@ -394,7 +394,7 @@ def place(
     points: cython.double[:, ::1], first: cython.longlong[::1], widths: cython.double[::1], walls: cython.uchar[::1],
     order: cython.longlong[::1], gain: cython.double,
     shifts: cython.double[::1], spacing: cython.double[::1],
-    whole: cython.bint, strict: cython.bint, caution: cython.double, cost: cython.double,
+    whole: cython.bint, strict: cython.bint, caution: cython.double, lenience: cython.double, cost: cython.double,
     shortest: cython.double, shortest_wall: cython.double,
     runs: cython.longlong[:, :, ::1], moved: cython.double[:, ::1], scratch: cython.double[:, ::1],
     starts: cython.longlong[::1],
@@ -405,6 +405,7 @@ def place(
     unless that makes any place darker than it is due: the paper's rule.
 
     caution: what a stroke adds itself counts so many times: 1 is where the squared error is least.
+    lenience: this part of the tone wanted is taken to be due besides, so that mere noise cuts no stroke.
     shifts: the sideways moves tried, in units of spacing[i] (subpixels).
     runs: (n, most, 2) out, points first … last of each run of polyline i, -1 where there is none.
     moved: (n, 2) out, the move chosen.
@@ -468,7 +469,8 @@ def place(
             for j in range(shifts.shape[0]):
                 ox = nx * shifts[j] * spacing[i]
                 oy = ny * shifts[j] * spacing[i]
-                n = _gains(bits, counts, residual, profile, points, p0, p1, ox, oy, widths[i], gain, ink, own, due)
+                n = _gains(bits, counts, residual, guide, lenience, profile, points, p0, p1, ox, oy,
+                           widths[i], gain, ink, own, due)
                 if not whole and not strict:
                     value = _runs(n, ink, own, due, cost, least, least_wall, (walls[i] & 1) != 0, (walls[i] & 2) != 0,
                                   caution, total, best, starts)
@@ -497,7 +499,8 @@ def place(
                 _draw(bits, counts, residual, guide, kernel, step, points, p0, p1, bx, by, widths[i], gain, True)
                 continue
             if m != shifts.shape[0] - 1:
-                n = _gains(bits, counts, residual, profile, points, p0, p1, bx, by, widths[i], gain, ink, own, due)
+                n = _gains(bits, counts, residual, guide, lenience, profile, points, p0, p1, bx, by,
+                           widths[i], gain, ink, own, due)
                 _runs(n, ink, own, due, cost, least, least_wall, (walls[i] & 1) != 0, (walls[i] & 2) != 0, caution,
                       total, best, starts)
             j = n

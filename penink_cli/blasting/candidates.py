@@ -14,8 +14,6 @@ from penink_cli.textures.even import direction
 
 #: Strokes are sampled at about this distance.
 STEP_PT = 1.5
-#: Strokes that end for no reason of their own may be this much longer to reach a wall.
-SLACK_PT = 4.0
 #: Candidates of a layer are tried in so many batches.
 BATCHES = 4
 
@@ -44,36 +42,33 @@ class Candidates:
 
 
 def between_walls(
-    cubics: Floats,
+    points: Floats,
+    first: Ints,
     joined: npt.NDArray[np.bool_],
-    longer: bool,
+    slack: Floats,
     pen: float,
     painted: float,
     borders: walls.Walls,
     sheet: Sheet,
     rank: Floats,
 ) -> Candidates:
-    """Candidates from cubics (n, 4, 2), cut where they cross walls.
+    """Candidates from curves, cut where they cross walls.
 
-    joined: (n, 2) whether another stroke goes on from the cubic's start and its end.
-    longer: whether a cubic may be made longer to reach a wall, where none goes on from it.
+    joined: (n, 2) whether another stroke goes on from the curve's start and its end.
+    slack: (n, 2) which part of it, at its start and at its end, is there only to reach a wall.
     rank: (n,) those of lower rank are tried first.
     """
-    n = len(cubics)
-    slack = ~joined & longer
-    chord = cubics[:, 3] - cubics[:, 0]
-    more = SLACK_PT / np.maximum(np.sqrt((chord * chord).sum(axis=1)), 1.0)
-    extended = curves.blossom(cubics, np.where(slack[:, 0], -more, 0.0), np.where(slack[:, 1], 1.0 + more, 1.0))
-    points, first = np.ascontiguousarray(extended.reshape(-1, 2)), np.arange(n + 1) * 4
+    n = len(first) - 1
     pieces = curves.pieces_of(points, first, STEP_PT)
     lines = curves.sample(points, first, pieces)
-    extra = [np.where(slack[:, k], more / (1 + more * slack.sum(axis=1)) * pieces, 0.0) for k in (0, 1)]
-    parts = walls.cut(borders, lines, np.full(n, painted), (extra[0], extra[1]), sheet.width, sheet.height)
+    count = np.diff(lines.first) - 1
+    extra = (slack[:, 0] * count, slack[:, 1] * count)
+    parts = walls.cut(borders, lines, np.full(n, painted), extra, sheet.width, sheet.height)
     points, first = curves.cut(points, first, pieces, parts.curve, parts.start, parts.end)
     order = np.argsort(rank[parts.curve], kind="stable")
     # where another stroke goes on, a short piece is no stub
     goes_on = joined[parts.curve] & np.column_stack(
-        [parts.start <= 1e-6, parts.end >= pieces[parts.curve] - 1e-6]
+        [parts.start <= 1e-6, parts.end >= count[parts.curve] - 1e-6]
     )
     bounded = parts.bounded | goes_on[:, 0] | (goes_on[:, 1].astype(np.uint8) << 1)
     pieces = curves.pieces_of(points, first, STEP_PT)
@@ -88,9 +83,9 @@ def swept(
 ) -> Candidates:
     """The strokes of one layer that cover each cell as coverage asks, in no order."""
     hatch = sweep.hatch(sheet, coverage, layer, pen, gain_pt, seed)
-    rank = np.random.default_rng([seed, 3]).random(len(hatch.curves))
+    rank = np.random.default_rng([seed, 3]).random(len(hatch.joined))
     painted = sweep.painted_width(layer.angle, pen, gain_pt)
-    return between_walls(hatch.curves, hatch.joined, True, pen, painted, borders, sheet, rank)
+    return between_walls(hatch.points, hatch.first, hatch.joined, hatch.slack, pen, painted, borders, sheet, rank)
 
 
 def lattice(
@@ -127,4 +122,6 @@ def lattice(
     uu = half[:, None] * np.array([-1.0, -1 / 3, 1 / 3, 1.0])
     vv = turn[:, None] * uu + bow[:, None] * np.array([-0.5, 0.85, 0.85, -0.5])
     cubics = middle[:, None, :] + uu[..., None] * along + vv[..., None] * across
-    return between_walls(cubics, np.zeros((len(half), 2), bool), False, pen, painted, borders, sheet, -due)
+    points, first = cubics.reshape(-1, 2), np.arange(len(half) + 1) * 4
+    none = np.zeros((len(half), 2))
+    return between_walls(points, first, none.astype(bool), none, pen, painted, borders, sheet, -due)

@@ -9,15 +9,21 @@ from penink_cli.blasting.sheet import Cells, Sheet
 from penink_cli.model import EdgeList, Floats, HatchLayer, Strokes
 
 #: What a run of ink must gain, in cells × tone: less, and it is not worth a stroke.
-RUN_COST = 0.35
+RUN_COST = 0.25
 #: A stroke that fills a place counts its own ink so many times: better a little too light than doubled lines.
-FILL_CAUTION = 1.6
+FILL_CAUTION = 2.4
+#: One that the sweep has laid counts it plainly, and part of the tone besides as due: where it lies is right on the
+#: whole, and the noise of what lies around it is no reason to cut it.
+TRIM_CAUTION = 1.0
+LENIENCE = 0.1
+#: It must pass a place where so many times as much is due as it adds itself.
+FILL_LEAST = 1.2
 #: Rounds: the first ones lay the lines anew, the later ones only trim and fill.
 SWEEPS, ROUNDS = 2, 4
 #: How much of the error the next sweep's density takes up. More bends the lines.
-SWEEP_GAIN = 0.25
+SWEEP_GAIN = 0.4
 #: How far a hand's pressure widens or narrows a stroke.
-PRESSURE = 0.18
+PRESSURE = 0.22
 
 
 def shares(tone: Floats, layers: tuple[HatchLayer, ...]) -> list[Floats]:
@@ -69,10 +75,10 @@ def hatch_sheet(
         sheet.owe(wanted)
         strokes = []
         for part in laid:
-            runs, moved = sheet.place(part.lines, part.widths, part.batches, walls=part.bounded, cost=RUN_COST)
+            runs, moved = sheet.place(part.lines, part.widths, part.batches, walls=part.bounded, cost=RUN_COST, caution=TRIM_CAUTION, lenience=LENIENCE)
             strokes.append(part.drawn(runs, moved))
         for i, (layer, pen) in enumerate(zip(layers, pens)):
-            part = candidates.lattice(sheet, layer, pen, gain_pt, 40.0, 1.5, 0.8, borders, seed * 64 + turn * 8 + i)
+            part = candidates.lattice(sheet, layer, pen, gain_pt, 40.0, 1.5, FILL_LEAST, borders, seed * 64 + turn * 8 + i)
             runs, moved = sheet.place(
                 part.lines, part.widths, part.batches, walls=part.bounded, cost=RUN_COST, caution=FILL_CAUTION,
             )  # fmt: skip

@@ -160,6 +160,7 @@ class Sheet:
         strict: bool = False,
         cost: float = 0.0,
         caution: float = 1.0,
+        lenience: float = 0.0,
         shortest_pt: float = 7.0,
         shortest_wall_pt: float = 2.0,
         most: int = 4,
@@ -170,7 +171,8 @@ class Sheet:
         walls: (n,) bit 0: the polyline's start is at a wall (an edge, the frame), bit 1: its end.
         shifts: sideways moves to try, in units of spacing_pt (n,).
         cost: what a run must gain, in cells × tone. caution: how many times the stroke's own ink counts
-        against it; 1 is where the squared error is least. Returns the runs (r, 3): polyline, first and last of
+        against it; 1 is where the squared error is least. lenience: the part of the tone that is taken to be due
+        besides, so that mere noise cuts no stroke. Returns the runs (r, 3): polyline, first and last of
         its points, and how far each run was moved (r, 2) in points.
 
         Polylines of one batch are tried in blocks; those of every second block each way at the
@@ -190,7 +192,7 @@ class Sheet:
             _ink.place(
                 self.bits, self.counts, self.residual, self.tone, self.kernel, self.step, self.profile,
                 points, lines.first, widths_sub, walls, order, self.gain, moves, spacing,
-                whole, strict, caution, cost, shortest_pt * self.pitch, shortest_wall_pt * self.pitch,
+                whole, strict, caution, lenience, cost, shortest_pt * self.pitch, shortest_wall_pt * self.pitch,
                 runs, moved, np.empty((5, longest)), np.empty(longest, np.int64),
             )  # fmt: skip
 

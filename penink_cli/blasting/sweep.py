@@ -14,12 +14,13 @@ This module alone imports the compiled kernel `_sweep`.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
-from penink_cli.blasting import _sweep
+from penink_cli.blasting import _sweep, curves
 from penink_cli.blasting.sheet import Sheet
 from penink_cli.model import Floats, HatchLayer, Ints
 from penink_cli.textures.even import direction
@@ -30,6 +31,10 @@ ROW_PT = 1.0  # across it
 PAD_PT = 24.0
 SHORTEST_PT = 7.0
 STROKE_PT = (34.0, 72.0)
+#: Strokes that end for no reason of their own are laid this much longer, to reach an edge if there is one.
+SLACK_PT = 4.0
+#: Distance of the knots of a wandering stroke.
+KNOT_PT = 9.0
 #: No stroke is turned from its layer's direction by more (the tangent of two degrees).
 STEEPEST = 0.035
 #: How much of a line's deviation from where it was due the next line keeps. Less than all, so that the
@@ -45,14 +50,18 @@ BOW_PT = 0.3
 
 @dataclass(frozen=True, eq=False)
 class Hatch:
-    """Strokes of one layer: straight lines with a bow, over the frame and a little beyond it.
+    """Strokes of one layer: straight lines with a bow, or wandering ones, over the frame and a little beyond it.
 
-    curves: (n, 4, 2) control points, points. joined: (n, 2) whether another stroke goes on from its start, its end.
+    points, first: control points of all of them, as in `model.Strokes`. joined: (n, 2) whether another stroke goes
+        on from its start, its end.
+    slack: (n, 2) which part of its length, at its start and at its end, is there only to reach an edge.
     spacing: (n,) distance to the neighbouring lines that the density asks for, points.
     """
 
-    curves: Floats
+    points: Floats
+    first: Ints
     joined: npt.NDArray[np.bool_]
+    slack: Floats
     spacing: Floats
 
 
@@ -75,10 +84,12 @@ def hatch(sheet: Sheet, coverage: Floats, layer: HatchLayer, pen_pt: float, gain
     phase = np.zeros((columns, rows))
     u = u0 + (np.arange(columns) + 0.5) * COLUMN_PT
     v = v0 + (np.arange(rows - 1) + 0.5) * ROW_PT
+    wander = wandering(layer, seed)
+    pushed = v[None, :] + wander(u[:, None], v[None, :])
     cells = np.array([sheet.columns / sheet.width, sheet.rows / sheet.height])
-    column = np.clip(((u[:, None] * c - v[None, :] * s) * cells[0]).astype(np.int64), 0, sheet.columns - 1)
-    row = np.clip(((u[:, None] * s + v[None, :] * c) * cells[1]).astype(np.int64), 0, sheet.rows - 1)
-    x, y = u[:, None] * c - v[None, :] * s, u[:, None] * s + v[None, :] * c
+    x, y = u[:, None] * c - pushed * s, u[:, None] * s + pushed * c
+    column = np.clip((x * cells[0]).astype(np.int64), 0, sheet.columns - 1)
+    row = np.clip((y * cells[1]).astype(np.int64), 0, sheet.rows - 1)
     near = np.abs(x - sheet.width / 2) < sheet.width / 2 + PAD_PT
     near &= np.abs(y - sheet.height / 2) < sheet.height / 2 + PAD_PT
     density = np.where(near, coverage[row, column] / width, 0.0)
@@ -119,14 +130,54 @@ def hatch(sheet: Sheet, coverage: Floats, layer: HatchLayer, pen_pt: float, gain
     middle_v += rng.normal(0, WAVER, n) * np.minimum(spacing, 8.0)
     slope += rng.normal(0, WAVER, n) * np.minimum(spacing, 8.0) / np.maximum(half, 8.0) * 0.7
     bow = rng.normal(0, 1, n) * np.minimum(BOW_PT, 0.14 * spacing) * np.minimum(half / 20.0, 1.0)
-    t = np.array([0.0, 1 / 3, 2 / 3, 1.0])
-    uu = start[:, None] + (end - start)[:, None] * t
-    vv = middle_v[:, None] + slope[:, None] * uu + bow[:, None] * np.array([-0.5, 0.85, 0.85, -0.5])
-    uu = uu + middle_u[:, None]
-    curves = uu[..., None] * along + vv[..., None] * across
-    return Hatch(curves, joined, spacing)
+    slack = np.where(joined, 0.0, SLACK_PT)
+    start, end = start - slack[:, 0], end + slack[:, 1]
+    # knots along each stroke: one cubic does for a straight one, a wandering one has one every so often
+    if layer.wave_pt > 0:
+        count = np.maximum(2, np.ceil((end - start) / KNOT_PT).astype(np.int64)) + 1
+    else:
+        count = np.full(n, 2)
+    who, k = np.repeat(np.arange(n), count), curves.ramp(count)
+    t = k / (count[who] - 1)
+
+    def place(t: Floats) -> Floats:
+        du = start[who] + (end - start)[who] * t
+        uu, vv = middle_u[who] + du, middle_v[who] + slope[who] * du + bow[who] * 4.0 * t * (1.0 - t)
+        return uu[:, None] * along + (vv + wander(uu, vv))[:, None] * across
+
+    # Hermite to Bézier: the tangents are chords over a small stretch, so that no function needs a derivative
+    step = 1.0 / (count[who] - 1)
+    lo, hi = np.maximum(t - 0.1 * step, 0.0), np.minimum(t + 0.1 * step, 1.0)
+    knots, tangent = place(t), (place(hi) - place(lo)) * (step / (3.0 * (hi - lo)))[:, None]
+    first = curves.starts(3 * (count - 1) + 1)
+    points = np.empty((first[-1], 2))
+    at = first[who] + 3 * k
+    points[at] = knots
+    inner = k < count[who] - 1
+    points[at[inner] + 1] = knots[inner] + tangent[inner]
+    points[at[k > 0] - 1] = knots[k > 0] - tangent[k > 0]
+    return Hatch(points, first, joined, slack / (end - start)[:, None], spacing)
 
 
-def number(hatches: list[Hatch]) -> Ints:
-    """(m + 1,) where each hatch's strokes begin when all are laid end to end."""
-    return np.concatenate([[0], np.cumsum([len(h.curves) for h in hatches])])
+def wandering(layer: HatchLayer, seed: int) -> Callable[[Floats, Floats], Floats]:
+    """How far (points) the layer's lines are pushed across their direction at (u, v): smooth noise, or nothing.
+
+    Values drawn at the corners of a grid are blended by cubics; the grid's cells are three times as long across the
+    lines as along them, so that neighbours wander together.
+    """
+    if layer.wave_pt <= 0:
+        return lambda u, v: np.zeros(np.broadcast_shapes(u.shape, v.shape))
+    table = np.random.default_rng([seed & 0xFFFF, 6]).uniform(-1.0, 1.0, (64, 64))
+
+    def at(u: Floats, v: Floats) -> Floats:
+        x, y = u / (layer.wave_length_pt / 2), v / (1.5 * layer.wave_length_pt)
+        i, j = np.floor(x).astype(np.int64), np.floor(y).astype(np.int64)
+        f, g = x - i, y - j
+        f, g = f * f * (3.0 - 2.0 * f), g * g * (3.0 - 2.0 * g)
+        i, j = i & 63, j & 63
+        near = table[j, i] * (1 - f) + table[j, (i + 1) & 63] * f
+        far = table[(j + 1) & 63, i] * (1 - f) + table[(j + 1) & 63, (i + 1) & 63] * f
+        pushed: Floats = layer.wave_pt * (near * (1 - g) + far * g)
+        return pushed
+
+    return at

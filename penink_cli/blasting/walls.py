@@ -17,7 +17,7 @@ from penink_cli.model import EdgeList, Floats, Ints
 CELL_PT = 6.0
 #: Steps of tone at which an edge is a wall, and at which it is one if it goes on from a wall. Cutting strokes at
 #: every weak edge leaves stubble between edges that run side by side.
-STRONG, WEAK = 0.22, 0.12
+STRONG, WEAK = 0.3, 0.18
 #: The tone of an edge's side is looked up so far from it, points.
 BESIDE_PT = 1.4
 #: Pieces between walls that are shorter are not drawn.
@@ -137,7 +137,7 @@ def cut(
         (np.diff(points[np.column_stack([lines.first[:-1], lines.first[1:] - 1])], axis=1)[:, 0] ** 2).sum(1)
     )
     step = np.maximum(step / np.maximum(count - 1, 1), 1e-6)
-    margin = inside * np.minimum(0.5 * painted[who] / np.maximum(sine, 0.2), 2 * painted[who]) / step[who]
+    margin = inside * np.minimum(0.42 * painted[who] / np.maximum(sine, 0.2), 2 * painted[who]) / step[who]
     begin = curves.starts(per + 2)
     stop, gap, wall = np.zeros(begin[-1]), np.zeros(begin[-1]), np.ones(begin[-1], np.uint8)
     at = begin[who] + 1 + curves.ramp(per)

@@ -271,7 +271,7 @@ def brick(angle: float, pen: float, spacing: float, layers: int, seed: int) -> T
 
 
 #: Kind -> (maker, its usual angle, pen and number of layers).
-KINDS: dict[str, tuple[Callable[[float, float, float, int, int], Texture], float, float, int]] = {
+MAKERS: dict[str, tuple[Callable[[float, float, float, int, int], Texture], float, float, int]] = {
     "parallel": (parallel, -45.0, 0.4, 1),
     "crosshatch": (crosshatch, -45.0, 0.4, 2),
     "crosshatch4": (crosshatch, -45.0, 0.4, 4),
@@ -292,5 +292,5 @@ def make(
     angle: of the first layer, degrees, clockwise from the right. pen: stroke width, points. spacing: hatching lines of one
     layer are nowhere closer, points; 0 for no limit. layers: 1 … 4 directions of hatching.
     """
-    maker, usual_angle, usual_pen, usual_layers = KINDS[kind]
+    maker, usual_angle, usual_pen, usual_layers = MAKERS[kind]
     return maker(usual_angle if angle is None else angle, pen or usual_pen, spacing, layers or usual_layers, seed)

@@ -1,0 +1,132 @@
+"""``penink texture``."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import click
+
+from penink_cli.errors import ParameterError
+from penink_cli.formats import texture as texture_format
+from penink_cli.model import Texture
+from penink_cli.options import LENGTH, Finite, Length, output_options
+from penink_cli.streams import reading, source_name, writing
+from penink_cli.texture_options import find_texture, shipped
+from penink_cli.textures.kinds import KINDS
+
+
+@click.group(name="texture")
+@click.help_option("-h", "--help")
+def texture() -> None:
+    """List, show, make and import stroke textures.
+
+    A texture is a tile of strokes that repeats, each with a priority: light tones hold only those drawn first.
+
+    \b
+    penink texture list
+    penink texture make crosshatch --angle 30 --pen 0.3mm -o mine.texture.json
+    penink blast --texture mine.texture.json --width 4in photo.pgm | penink to-ps -o photo.ps
+    """
+
+
+@texture.command(name="list")
+@output_options
+def list_textures(output: str | None, **_: Any) -> None:
+    """Name the textures that come with the program."""
+    text = "".join(f"{name:12} {KINDS.get(name, '')}".rstrip() + "\n" for name in shipped())
+    with writing(output, binary=False) as out:
+        out.write(text.encode("utf-8"))
+
+
+def describe(found: Texture, device_dpi: float | None) -> str:
+    """What there is to know of a texture, in lines of text."""
+    from penink_cli.blasting.reach import reachable
+
+    strokes = found.strokes
+    pens = sorted({f"{w:g}" for w in strokes.widths.tolist()}, key=float)
+    low, high = reachable(found, 72.0 / device_dpi if device_dpi else 0.0)
+    lines = [
+        f"name      {found.name}",
+        f"tile      {strokes.width:g} × {strokes.height:g} pt",
+        f"strokes   {len(strokes)}{', drawn whole or not at all' if found.whole else ''}",
+        f"pen       {', '.join(pens[:6])}{', …' if len(pens) > 6 else ''} pt",
+        f"tone      {low:.3f} to {high:.3f}" + (f" at {device_dpi:g} dpi" if device_dpi else " without a device's gain"),
+    ]
+    for layer in found.layers:
+        closest = f", no closer than {layer.spacing_pt:g} pt" if layer.spacing_pt else ""
+        wave = f", wandering {layer.wave_pt:g} pt over {layer.wave_length_pt:g} pt" if layer.wave_pt else ""
+        lines.append(
+            f"layer     {layer.angle:g}° from tone {layer.low:g} to {layer.high:g}, pen {layer.pen_pt:g} pt{closest}{wave}"
+        )
+    return "\n".join(lines) + "\n"
+
+
+@texture.command()
+@click.argument("name", metavar="NAME|FILE")
+@click.option("--json", "as_file", is_flag=True, help="Write the texture file itself.")
+@click.option("--device-dpi", type=Finite(10, 100_000), default=600, show_default=True, metavar="N")
+@output_options
+def show(name: str, as_file: bool, device_dpi: float, output: str | None, **_: Any) -> None:
+    """Say what a texture is like, and from which tone to which it reaches."""
+    found = find_texture(name)
+    text = None if as_file else describe(found, device_dpi)
+    with writing(output, binary=False) as out:
+        if text is None:
+            texture_format.write(out, found)
+        else:
+            out.write(text.encode("utf-8"))
+
+
+@texture.command()
+@click.argument("kind", type=click.Choice(sorted(KINDS)))
+@click.option("--angle", type=Finite(-360, 360), metavar="DEGREES", help="Direction, clockwise from the right.")
+@click.option("--spacing", type=Length(zero=True), default=0.0, help="Lines of one layer are nowhere closer.")
+@click.option("--pen", type=LENGTH, help="Width of the strokes.")
+@click.option("--layers", type=click.IntRange(1, 4), metavar="1…4", help="Directions of hatching.")
+@click.option("--seed", type=click.IntRange(0, 2**63 - 1), default=0, show_default=True, metavar="N")
+@output_options
+def make(
+    kind: str,
+    angle: float | None,
+    spacing: float,
+    pen: float | None,
+    layers: int | None,
+    seed: int,
+    output: str | None,
+    **_: Any,
+) -> None:
+    """Make a texture of a KIND, each of whose prefixes is evenly spaced.
+
+    Takes some seconds. Without options it is the one that comes with the program.
+    """
+    from penink_cli.textures.make import make as make_texture
+
+    made = make_texture(kind, angle=angle, pen=pen, spacing=spacing, layers=layers, seed=seed)
+    with writing(output, binary=False) as out:
+        texture_format.write(out, made)
+
+
+@texture.command(name="import")
+@click.argument("file", required=False, metavar="[SVG]", type=click.Path(allow_dash=True))
+@click.option("--name", help="The texture's name.  [default: the file's]")
+@click.option("--pen", type=LENGTH, help="Width of all strokes.  [default: each path's stroke-width]")
+@click.option("--whole", is_flag=True, help="Strokes are drawn whole or not at all.")
+@output_options
+def import_svg(
+    file: str | None, name: str | None, pen: float | None, whole: bool, output: str | None, **_: Any
+) -> None:
+    """Make a texture of an SVG drawing.
+
+    Its paths, lines and shapes become strokes, in their order, which is the priority: what is drawn first comes
+    first. The drawing's size is the tile's.
+    """
+    from penink_cli.formats import svg_texture
+
+    source = source_name(file)
+    with reading(file) as stream:
+        title = name or (source.rsplit("/", 1)[-1].removesuffix(".svg") if file and file != "-" else "imported")
+        drawing = svg_texture.read(stream, source, title, pen, whole)
+    if not len(drawing.strokes):
+        raise ParameterError("no stroke in the drawing").from_source(source)
+    with writing(output, binary=False) as out:
+        texture_format.write(out, drawing)

@@ -1,0 +1,13 @@
+"""The kinds of texture that can be made, all of which come with the program."""
+
+#: Name -> what it is like.
+KINDS = {
+    "brick": "a wall, its joints first, then the bricks one by one",
+    "crosshatch": "lines in one direction, and others across them where it is dark",
+    "crosshatch4": "lines in up to four directions",
+    "grain": "wandering lines side by side, like the grain of wood",
+    "grass": "blades that grow upwards and bend",
+    "parallel": "lines in one direction, denser as it gets darker",
+    "scribble": "loops of a restless pen",
+    "stipple": "dots",
+}
