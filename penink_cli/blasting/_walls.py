@@ -12,13 +12,14 @@ def crossings(
     points: cython.double[:, ::1], first: cython.longlong[::1],
     walls: cython.double[:, ::1], begin: cython.longlong[::1], items: cython.longlong[::1],
     columns: cython.Py_ssize_t, rows: cython.Py_ssize_t, left: cython.double, top: cython.double, cell: cython.double,
-    who: cython.longlong[::1], which: cython.longlong[::1], where: cython.double[::1], sine: cython.double[::1],
+    who: cython.longlong[::1], which: cython.longlong[::1],
+    where: cython.double[::1], sine: cython.double[::1],
 ) -> cython.Py_ssize_t:
     """Crossings of polylines with wall segments (m, 4); returns how many there are, also beyond the room for them.
 
     The walls near a grid cell (row-major, columns × rows cells from left, top) are items[begin[c] : begin[c + 1]],
-    and each is in the list of every cell that its bounding box touches. A crossing is told as the polyline, the wall, the
-    place on the polyline counted in points, and the sine of the angle.
+    and each is in the list of every cell that its bounding box touches. A crossing is told as the polyline, the wall,
+    the place on the polyline counted in points, and the sine of the angle.
     """
     n: cython.Py_ssize_t = 0
     room: cython.Py_ssize_t = who.shape[0]

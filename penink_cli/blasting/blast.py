@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from dataclasses import replace
+
+import numpy as np
 
 from penink_cli.blasting import hatching, tile
 from penink_cli.blasting.sheet import Sheet
@@ -11,6 +14,8 @@ from penink_cli.model import EdgeList, Floats, Strokes, Texture
 
 #: The rules by which strokes are chosen.
 RULES = ("best", "strict", "threshold")
+#: How often a blast calls its `tick`, at the most.
+TICKS = 5
 
 
 def blast(
@@ -26,21 +31,51 @@ def blast(
     rule: str = "best",
     outlines: Strokes | None = None,
     threads: int | None = None,
+    tick: Callable[[], None] = lambda: None,
 ) -> Strokes:
-    """Strokes of `texture` on a sheet of width_pt × height_pt that have the tone (h, w), 0 paper … 1 ink."""
+    """Strokes of `texture` that give a sheet the tone of an image.
+
+    tone: (h, w) ink coverage, 0 paper … 1 solid ink; it fills the sheet of width_pt × height_pt points.
+    edges: discontinuity edges of the image; strokes end at those over which the tone steps strongly.
+    pen_pt: the one width of all strokes; by default the texture's, varied a little as a hand does.
+    device_dpi: of the printer, which paints every dot that a stroke touches; None where nothing is gained.
+    rule: "best", true tone in a closed loop; "strict", the paper's, no stroke that makes any place too dark;
+        "threshold", each stroke wherever the tone exceeds the one at which the texture has it enter.
+    outlines: strokes drawn already, whose ink counts; they are not among those returned.
+    tick: called now and then, `TICKS` times at the most.
+
+    The width and density of strokes do not depend on the size of the sheet. Equal input gives equal strokes,
+    whatever the number of threads. Raises ParameterError for a rule that is none.
+    """
     if rule not in RULES:
         raise ParameterError(f"rule {rule!r}: known are {', '.join(RULES)}")
     gain = 72.0 / device_dpi if device_dpi else 0.0
     sheet = Sheet(tone, width_pt, height_pt, gain, threads or 1)
+    if outlines is not None:
+        hatching.draw_first(sheet, outlines)
     if rule == "best" and texture.layers:
-        strokes = hatching.hatch_sheet(sheet, texture.layers, edges, gain, seed, pen_pt)
+        strokes = hatching.hatch_sheet(sheet, texture.layers, edges, gain, seed, pen_pt, tick)
     else:
         enters = tile.thresholds(texture, gain)
         if rule == "threshold":
             parts = tile.draw_by_threshold(sheet, texture, enters, seed, pen_pt)
         else:
-            parts = tile.blast_tile(sheet, texture, enters, seed, rule == "strict", pen_pt)
+            parts = tile.blast_tile(sheet, texture, edges, enters, seed, rule == "strict", pen_pt, tick)
         strokes = hatching.join(parts, width_pt, height_pt)
         if rule == "best" and pen_pt is None and len(strokes):
             strokes = hatching.press(sheet, strokes, seed)
+    tick()
     return replace(strokes, texture=texture.name, seed=seed)
+
+
+def batches(strokes: Strokes, size: int = 4096) -> Iterator[Strokes]:
+    """The strokes, so many at a time, to be written as they come."""
+    for start in range(0, len(strokes), size):
+        first = strokes.first[start : start + size + 1]
+        points = strokes.points[first[0] : first[-1]]
+        yield replace(strokes, points=points, first=first - first[0], widths=strokes.widths[start : start + size])
+
+
+def too_dark(tone: Floats, darkest: float) -> float:
+    """The part of an image (h, w) that is darker than a texture's darkest tone by more than the eye can tell."""
+    return float(np.count_nonzero(tone > darkest + 0.02)) / tone.size

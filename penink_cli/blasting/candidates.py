@@ -67,10 +67,8 @@ def between_walls(
     points, first = curves.cut(points, first, pieces, parts.curve, parts.start, parts.end)
     order = np.argsort(rank[parts.curve], kind="stable")
     # where another stroke goes on, a short piece is no stub
-    goes_on = joined[parts.curve] & np.column_stack(
-        [parts.start <= 1e-6, parts.end >= count[parts.curve] - 1e-6]
-    )
-    bounded = parts.bounded | goes_on[:, 0] | (goes_on[:, 1].astype(np.uint8) << 1)
+    goes_on = joined[parts.curve] & np.column_stack([parts.start <= 1e-6, parts.end >= count[parts.curve] - 1e-6])
+    bounded = (parts.bounded | goes_on[:, 0] | (goes_on[:, 1].astype(np.uint8) << 1)).astype(np.uint8)
     pieces = curves.pieces_of(points, first, STEP_PT)
     return Candidates(
         points, first, pieces, curves.sample(points, first, pieces), np.full(len(first) - 1, pen), bounded,

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
-from penink_cli.blasting import candidates, curves, walls
+from penink_cli.blasting import candidates, curves, thin, walls
 from penink_cli.blasting.sheet import Cells, Sheet
 from penink_cli.model import EdgeList, Floats, HatchLayer, Strokes
 
@@ -55,30 +57,46 @@ def hatch_sheet(
     gain_pt: float,
     seed: int,
     pen_pt: float | None,
+    tick: Callable[[], None],
 ) -> Strokes:
-    """Strokes of all layers that give the sheet its tone."""
+    """Strokes of all layers that give the sheet its tone, together with the ink that is there already."""
     borders = walls.build(edges, sheet)
     pens = [pen_pt or layer.pen_pt for layer in layers]
     weight = sheet.low_pass(np.ones_like(sheet.tone))
+    along = thin.strokes_along(sheet, min(pens), min(pens) + gain_pt * 1.27)
+    draw_first(sheet, along)
+    there = np.minimum(sheet.low_pass(sheet.ink) / weight, np.float32(0.99))
     wanted: Cells = sheet.tone.copy()
     density: Cells = sheet.tone.copy()
     laid: list[candidates.Candidates] = []
     best: tuple[float, list[Strokes]] | None = None
     for turn in range(ROUNDS):
+        tick()
         if turn < SWEEPS:
-            smooth = np.clip(sheet.low_pass(density) / weight, 0.0, 0.995).astype(np.float64)
+            smooth = (sheet.low_pass(density) / weight - there) / (1 - there)
+            smooth = np.clip(smooth, 0.0, 0.995).astype(np.float64)
             laid = [
                 candidates.swept(sheet, cover, layer, pen, gain_pt, borders, seed * 64 + i)
                 for i, (layer, pen, cover) in enumerate(zip(layers, pens, shares(smooth, layers)))
             ]
         sheet.clear()
         sheet.owe(wanted)
-        strokes = []
+        strokes = [along]
         for part in laid:
-            runs, moved = sheet.place(part.lines, part.widths, part.batches, walls=part.bounded, cost=RUN_COST, caution=TRIM_CAUTION, lenience=LENIENCE)
+            runs, moved = sheet.place(
+                part.lines,
+                part.widths,
+                part.batches,
+                walls=part.bounded,
+                cost=RUN_COST,
+                caution=TRIM_CAUTION,
+                lenience=LENIENCE,
+            )
             strokes.append(part.drawn(runs, moved))
         for i, (layer, pen) in enumerate(zip(layers, pens)):
-            part = candidates.lattice(sheet, layer, pen, gain_pt, 40.0, 1.5, FILL_LEAST, borders, seed * 64 + turn * 8 + i)
+            part = candidates.lattice(
+                sheet, layer, pen, gain_pt, 40.0, 1.5, FILL_LEAST, borders, seed * 64 + turn * 8 + i
+            )
             runs, moved = sheet.place(
                 part.lines, part.widths, part.batches, walls=part.bounded, cost=RUN_COST, caution=FILL_CAUTION,
             )  # fmt: skip
@@ -95,6 +113,14 @@ def hatch_sheet(
     if pen_pt is None and len(joined):
         joined = press(sheet, joined, seed)
     return joined
+
+
+def draw_first(sheet: Sheet, strokes: Strokes) -> None:
+    """Ink strokes on the sheet for good: outlines, thin things."""
+    if len(strokes):
+        pieces = curves.pieces_of(strokes.points, strokes.first, candidates.STEP_PT)
+        sheet.paint(curves.sample(strokes.points, strokes.first, pieces), strokes.widths)
+        sheet.keep()
 
 
 def press(sheet: Sheet, strokes: Strokes, seed: int) -> Strokes:

@@ -11,11 +11,8 @@ def reachable(texture: Texture, gain_pt: float) -> tuple[float, float]:
 
     Hatching in layers ends where its last layer does, and is never darker than the closest lines it may draw.
     """
+    if texture.layers:
+        return 0.0, max(layer.high for layer in texture.layers)
     enters = tile.thresholds(texture, gain_pt)
-    low = float(enters[1]) if len(enters) > 1 else tile.reach(texture, gain_pt)
-    if not texture.layers:
-        return low, tile.reach(texture, gain_pt)
-    bare = 1.0
-    for layer in texture.layers:
-        bare = min(bare, 1.0 - layer.high)
-    return 0.0, 1.0 - bare
+    darkest = tile.reach(texture, gain_pt)
+    return (float(enters[1]) if len(enters) > 1 else darkest), darkest

@@ -80,12 +80,14 @@ class Sheet:
         #: subpixels per point, x and y; they differ by less than a percent save on tiny sheets
         self.scale = np.array([8.0 * self.columns / width_pt, 8.0 * self.rows / height_pt])
         self.pitch = float(self.scale[0] + self.scale[1]) / 2.0
+        self.gain_pt = gain_pt
         self.gain = gain_pt * self.pitch
         self.threads = max(1, threads)
         self.tone: Cells = resample(tone, self.rows, self.columns).astype(np.float32)
         self.bits = np.zeros((self.rows, self.columns, 8), np.uint8)
         self.counts = np.zeros((self.rows, self.columns), np.uint8)
         self.kernel, self.profile = low_pass_kernel(SIGMA_PT / CELL_PT)
+        self._kept: tuple[npt.NDArray[np.uint8], npt.NDArray[np.uint8]] | None = None
         self.residual: Cells = np.zeros((self.rows, self.columns), np.float32)
         self.step = STEP
         # what the eye sees is kept for cells of twice the size
@@ -94,9 +96,16 @@ class Sheet:
         self._seen_weight = self._gather(np.ones_like(self._coarse_tone), self._coarse_tone, self._eye)
 
     def clear(self) -> None:
-        """Take all ink away."""
-        self.bits[:] = 0
-        self.counts[:] = 0
+        """Take all ink away but what is there for good."""
+        if self._kept is None:
+            self.bits[:] = 0
+            self.counts[:] = 0
+        else:
+            self.bits[:], self.counts[:] = self._kept
+
+    def keep(self) -> None:
+        """What is inked by now is there for good."""
+        self._kept = self.bits.copy(), self.counts.copy()
 
     @property
     def ink(self) -> Cells:
@@ -281,11 +290,10 @@ def _resample_rows(tone: Floats, n: int) -> Floats:
         lo = np.minimum(at.astype(np.int64), max(0, h - 2))
         f = (at - lo)[:, None]
         return tone[lo] * (1 - f) + tone[np.minimum(lo + 1, h - 1)] * f
-    total: Floats = np.zeros((h + 1, tone.shape[1]))
+    total: npt.NDArray[np.float64] = np.zeros((h + 1, tone.shape[1]))
     np.cumsum(tone, axis=0, out=total[1:])
     at = np.arange(n + 1) * (h / n)
     lo = np.minimum(at.astype(np.int64), h - 1)
     f = (at - lo)[:, None]
-    edge: Floats = total[lo] * (1 - f) + total[lo + 1] * f
-    mean: Floats = np.clip(np.diff(edge, axis=0) * (n / h), 0.0, 1.0)
-    return mean
+    edge = total[lo] * (1 - f) + total[lo + 1] * f
+    return np.asarray(np.clip(np.diff(edge, axis=0) * (n / h), 0.0, 1.0), np.float64)

@@ -140,7 +140,7 @@ def hatch(sheet: Sheet, coverage: Floats, layer: HatchLayer, pen_pt: float, gain
     who, k = np.repeat(np.arange(n), count), curves.ramp(count)
     t = k / (count[who] - 1)
 
-    def place(t: Floats) -> Floats:
+    def at_parameter(t: Floats) -> Floats:
         du = start[who] + (end - start)[who] * t
         uu, vv = middle_u[who] + du, middle_v[who] + slope[who] * du + bow[who] * 4.0 * t * (1.0 - t)
         return uu[:, None] * along + (vv + wander(uu, vv))[:, None] * across
@@ -148,7 +148,7 @@ def hatch(sheet: Sheet, coverage: Floats, layer: HatchLayer, pen_pt: float, gain
     # Hermite to Bézier: the tangents are chords over a small stretch, so that no function needs a derivative
     step = 1.0 / (count[who] - 1)
     lo, hi = np.maximum(t - 0.1 * step, 0.0), np.minimum(t + 0.1 * step, 1.0)
-    knots, tangent = place(t), (place(hi) - place(lo)) * (step / (3.0 * (hi - lo)))[:, None]
+    knots, tangent = at_parameter(t), (at_parameter(hi) - at_parameter(lo)) * (step / (3.0 * (hi - lo)))[:, None]
     first = curves.starts(3 * (count - 1) + 1)
     points = np.empty((first[-1], 2))
     at = first[who] + 3 * k

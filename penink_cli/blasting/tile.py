@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
-from penink_cli.blasting import curves
+from penink_cli.blasting import curves, walls
 from penink_cli.blasting.sheet import Cells, Sheet
-from penink_cli.model import Floats, Ints, Strokes, Texture
+from penink_cli.model import EdgeList, Floats, Ints, Strokes, Texture
 
 #: What a run of ink must gain, in cells × tone.
 RUN_COST = 0.3
@@ -121,18 +121,27 @@ def copies(
 
 
 def blast_tile(
-    sheet: Sheet, texture: Texture, enters: Floats, seed: int, strict: bool, pen: float | None
+    sheet: Sheet,
+    texture: Texture,
+    edges: EdgeList | None,
+    enters: Floats,
+    seed: int,
+    strict: bool,
+    pen: float | None,
+    tick: Callable[[], None],
 ) -> list[Strokes]:
     """Strokes of the tile, placed by the paper's rule, or in a closed loop that keeps the best of several rounds."""
     if strict:
         sheet.owe_strictly()
-        return _place(sheet, texture, enters, seed, True, pen)
+        return _place(sheet, texture, enters, seed, True, pen, None)
+    borders = None if texture.whole else walls.build(edges, sheet)
     wanted: Cells = sheet.tone.copy()
     best: tuple[float, list[Strokes]] | None = None
     for _ in range(ROUNDS):
+        tick()
         sheet.clear()
         sheet.owe(wanted)
-        strokes = _place(sheet, texture, enters, seed, False, pen)
+        strokes = _place(sheet, texture, enters, seed, False, pen, borders)
         error = sheet.error()
         size = float(np.mean(np.square(error, dtype=np.float64)))
         if best is None or size < best[0]:
@@ -142,24 +151,49 @@ def blast_tile(
     return best[1]
 
 
-def _place(sheet: Sheet, texture: Texture, enters: Floats, seed: int, strict: bool, pen: float | None) -> list[Strokes]:
+def _place(
+    sheet: Sheet,
+    texture: Texture,
+    enters: Floats,
+    seed: int,
+    strict: bool,
+    pen: float | None,
+    borders: walls.Walls | None,
+) -> list[Strokes]:
+    """One pass over all copies in order of priority; strokes that may be trimmed end at the borders."""
     out = []
-    slack = 2.0 if strict else SLACK
-    for part in copies(texture, enters, sheet, seed, slack, pen):
-        pieces = curves.pieces_of(part.points, part.first, STEP_PT)
-        lines = curves.sample(part.points, part.first, pieces)
-        n = len(part.widths)
+    plain = strict or texture.whole
+    for part in copies(texture, enters, sheet, seed, 2.0 if strict else SLACK, pen):
+        points, first, widths, bounded = part.points, part.first, part.widths, None
+        pieces = curves.pieces_of(points, first, STEP_PT)
+        lines = curves.sample(points, first, pieces)
+        if borders is not None:
+            none = np.zeros(len(widths))
+            cuts = walls.cut(borders, lines, widths + sheet.gain_pt, (none, none), sheet.width, sheet.height)
+            points, first = curves.cut(points, first, pieces, cuts.curve, cuts.start, cuts.end)
+            widths, bounded = widths[cuts.curve], cuts.bounded
+            pieces = curves.pieces_of(points, first, STEP_PT)
+            lines = curves.sample(points, first, pieces)
+        n = len(widths)
+        if n == 0:
+            continue
         batches = [b for b in np.array_split(np.arange(n), max(1, n // 4096)) if len(b)]
-        plain = strict or texture.whole
         runs, moved = sheet.place(
-            lines, part.widths, batches, strict=strict, whole=texture.whole, cost=0.0 if plain else RUN_COST,
-            shifts=(0.0,) if plain else MOVES, spacing_pt=np.ones(n), most=1 if plain else 4,
-        )  # fmt: skip
-        points, first = curves.cut(
-            part.points, part.first, pieces, runs[:, 0], runs[:, 1].astype(np.float64), runs[:, 2].astype(np.float64)
+            lines,
+            widths,
+            batches,
+            walls=bounded,
+            strict=strict,
+            whole=texture.whole,
+            cost=0.0 if plain else RUN_COST,
+            shifts=(0.0,) if plain else MOVES,
+            spacing_pt=np.ones(n),
+            most=1 if plain else 4,
         )
+        start, end = runs[:, 1].astype(np.float64), runs[:, 2].astype(np.float64)
+        points, first = curves.cut(points, first, pieces, runs[:, 0], start, end)
         points += np.repeat(moved, np.diff(first), axis=0)
-        out.append(Strokes(sheet.width, sheet.height, points, first, part.widths[runs[:, 0]]))
+        out.append(Strokes(sheet.width, sheet.height, points, first, widths[runs[:, 0]]))
     return out
 
 

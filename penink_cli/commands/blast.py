@@ -10,11 +10,12 @@ from penink_cli.commands.inputs import only_one_standard_input, read_edges, read
 from penink_cli.errors import ParameterError
 from penink_cli.layer_options import read_layers
 from penink_cli.options import LENGTH, POSITIVE, Finite, edges_option, filter_options, processors, threads_option
+from penink_cli.progress import progress
 from penink_cli.streams import writing
 from penink_cli.texture_options import find_texture, texture_option
 
 if TYPE_CHECKING:
-    from penink_cli.model import Floats, GreyImage
+    from penink_cli.model import Floats, GreyImage, Texture
 
 RULES = ("best", "strict", "threshold")
 
@@ -79,6 +80,7 @@ def blast(
     rule: str,
     ink_files: tuple[str, ...],
     threads: int | None,
+    quiet: bool,
     **_: Any,
 ) -> None:
     """Turn grey into pen strokes of the same tone.
@@ -89,6 +91,7 @@ def blast(
     \b
     penink blast --texture crosshatch --width 4in photo.pgm | penink to-ps -o photo.ps
     """
+    from penink_cli.blasting.blast import TICKS, batches
     from penink_cli.blasting.blast import blast as blast_tone
     from penink_cli.drawing import joined
     from penink_cli.formats import strokes as strokes_format
@@ -104,12 +107,47 @@ def blast(
     height_pt = width_pt * rows / columns
     check_size(width_pt, height_pt)
     ink = read_layers(ink_files) if ink_files else []
-    strokes = blast_tone(
-        tone_curve(image, gamma), width_pt, height_pt, edges, texture, seed=seed, pen_pt=pen,
-        device_dpi=device_dpi, rule=rule, outlines=joined(ink) if ink else None, threads=threads or processors(),
-    )  # fmt: skip
+    tone = tone_curve(image, gamma)
+    for line in warnings(tone, texture, pen, device_dpi):
+        click.echo(f"penink blast: warning: {line}", err=True)
+    with progress(TICKS, "blasting", quiet) as more:
+        strokes = blast_tone(
+            tone,
+            width_pt,
+            height_pt,
+            edges,
+            texture,
+            seed=seed,
+            pen_pt=pen,
+            device_dpi=device_dpi,
+            rule=rule,
+            outlines=joined(ink) if ink else None,
+            threads=threads or processors(),
+            tick=lambda: more(1),
+        )
     with writing(output, binary=False) as out:
-        strokes_format.write(out, strokes)
+        writer = strokes_format.Writer(out, width_pt, height_pt, texture=strokes.texture, seed=seed)
+        for batch in batches(strokes):
+            writer.add(batch)
+
+
+def warnings(tone: Floats, texture: Texture, pen: float | None, device_dpi: float | None) -> list[str]:
+    """What will keep the picture from having its tone, a line each."""
+    from penink_cli.blasting.blast import too_dark
+    from penink_cli.blasting.reach import reachable
+
+    lines = []
+    if device_dpi:
+        narrowest = (pen or float(texture.strokes.widths.min())) * device_dpi / 72
+        if narrowest < 1.5:
+            lines.append(
+                f"a pen of {narrowest:.2g} dots at {device_dpi:g} dpi: from 1.5 on the tone is true; use a wider --pen"
+            )
+    _, darkest = reachable(texture, 72.0 / device_dpi if device_dpi else 0.0)
+    part = too_dark(tone, darkest)
+    if part > 0.001:
+        lines.append(f"{part:.1%} of the picture is darker than {texture.name} can be ({darkest:.3f})")
+    return lines
 
 
 def tone_curve(image: GreyImage, gamma: float) -> Floats:

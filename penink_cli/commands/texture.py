@@ -50,13 +50,15 @@ def describe(found: Texture, device_dpi: float | None) -> str:
         f"tile      {strokes.width:g} × {strokes.height:g} pt",
         f"strokes   {len(strokes)}{', drawn whole or not at all' if found.whole else ''}",
         f"pen       {', '.join(pens[:6])}{', …' if len(pens) > 6 else ''} pt",
-        f"tone      {low:.3f} to {high:.3f}" + (f" at {device_dpi:g} dpi" if device_dpi else " without a device's gain"),
+        f"tone      {low:.3f} to {high:.3f}"
+        + (f" at {device_dpi:g} dpi" if device_dpi else " without a device's gain"),
     ]
     for layer in found.layers:
         closest = f", no closer than {layer.spacing_pt:g} pt" if layer.spacing_pt else ""
         wave = f", wandering {layer.wave_pt:g} pt over {layer.wave_length_pt:g} pt" if layer.wave_pt else ""
         lines.append(
-            f"layer     {layer.angle:g}° from tone {layer.low:g} to {layer.high:g}, pen {layer.pen_pt:g} pt{closest}{wave}"
+            f"layer     {layer.angle:g}° from tone {layer.low:g} to {layer.high:g}, "
+            f"pen {layer.pen_pt:g} pt{closest}{wave}"
         )
     return "\n".join(lines) + "\n"
 

@@ -73,7 +73,9 @@ def _texture(drawing: Any, name: str, pen_pt: float | None, whole: bool) -> Text
         raise FormatError(f"a coordinate that is no number, or is beyond ±{LIMIT:.0f} pt")
     first = np.zeros(len(strokes) + 1, np.int64)
     np.cumsum([len(s) for s in strokes], out=first[1:])
-    tile = Strokes(size[0] * POINTS_PER_PIXEL, size[1] * POINTS_PER_PIXEL, points, first, np.array(widths), texture=name)
+    tile = Strokes(
+        size[0] * POINTS_PER_PIXEL, size[1] * POINTS_PER_PIXEL, points, first, np.array(widths), texture=name
+    )
     return Texture(name, tile, np.arange(len(strokes), dtype=np.float64), whole)
 
 

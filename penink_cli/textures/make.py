@@ -289,8 +289,8 @@ def make(
 ) -> Texture:  # fmt: skip
     """A texture of a kind, by default as it is shipped.
 
-    angle: of the first layer, degrees, clockwise from the right. pen: stroke width, points. spacing: hatching lines of one
-    layer are nowhere closer, points; 0 for no limit. layers: 1 … 4 directions of hatching.
+    angle: of the first layer, degrees, clockwise from the right. pen: stroke width, points. spacing: hatching lines
+    of one layer are nowhere closer, points; 0 for no limit. layers: 1 … 4 directions of hatching.
     """
     maker, usual_angle, usual_pen, usual_layers = MAKERS[kind]
     return maker(usual_angle if angle is None else angle, pen or usual_pen, spacing, layers or usual_layers, seed)
