@@ -1,5 +1,4 @@
 # cython: language_level=3, boundscheck=False, wraparound=False, cdivision=True
-# mypy: disable-error-code="valid-type, misc, no-untyped-def, no-untyped-call"
 """Compiled loops over ink: painting strokes, trying them out, choosing the runs worth drawing.
 
 Everything here is in *subpixels*, eight to the side of a cell (see `sheet`). The ink

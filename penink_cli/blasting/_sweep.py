@@ -1,5 +1,4 @@
 # cython: language_level=3, boundscheck=False, wraparound=False, cdivision=True
-# mypy: disable-error-code="valid-type, misc, no-untyped-def, no-untyped-call"
 """Compiled loops of the sweep: lines laid as far apart as a density asks, then evened out.
 
 Coordinates are those of a grid of `phase[column, row]`: columns run along the hatch, rows

@@ -1,5 +1,4 @@
 # cython: language_level=3, boundscheck=False, wraparound=False, cdivision=True
-# mypy: disable-error-code="valid-type, misc, no-untyped-def, no-untyped-call"
 """Compiled loop: where polylines cross walls. Only `walls` imports this module."""
 
 import cython

@@ -63,7 +63,7 @@ def between_walls(
     lines = curves.sample(points, first, pieces)
     count = np.diff(lines.first) - 1
     extra = (slack[:, 0] * count, slack[:, 1] * count)
-    parts = walls.cut(borders, lines, np.full(n, painted), extra, sheet.width, sheet.height)
+    parts = walls.cut(borders, lines, np.full(n, painted), extra)
     points, first = curves.cut(points, first, pieces, parts.curve, parts.start, parts.end)
     order = np.argsort(rank[parts.curve], kind="stable")
     # where another stroke goes on, a short piece is no stub

@@ -60,7 +60,7 @@ def hatch_sheet(
     tick: Callable[[], None],
 ) -> Strokes:
     """Strokes of all layers that give the sheet its tone, together with the ink that is there already."""
-    borders = walls.build(edges, sheet)
+    borders = walls.build(edges, sheet, max(pen_pt or layer.pen_pt for layer in layers))
     pens = [pen_pt or layer.pen_pt for layer in layers]
     weight = sheet.low_pass(np.ones_like(sheet.tone))
     along = thin.strokes_along(sheet, min(pens), min(pens) + gain_pt * 1.27)

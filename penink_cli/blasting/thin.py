@@ -166,4 +166,6 @@ def strokes_along(sheet: Sheet, pen_pt: float, painted_pt: float) -> Strokes:
             sizes.append(3 * n + 1)
     first: Ints = curves.starts(np.array(sizes, np.int64))
     points = np.concatenate(parts) if parts else np.zeros((0, 2))
+    d = min(0.62 * pen_pt, 0.25 * sheet.width, 0.25 * sheet.height)
+    points = np.clip(points, d, (sheet.width - d, sheet.height - d))
     return Strokes(sheet.width, sheet.height, points, first, np.full(len(sizes), pen_pt))

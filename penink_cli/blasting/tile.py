@@ -133,8 +133,8 @@ def blast_tile(
     """Strokes of the tile, placed by the paper's rule, or in a closed loop that keeps the best of several rounds."""
     if strict:
         sheet.owe_strictly()
-        return _place(sheet, texture, enters, seed, True, pen, None)
-    borders = None if texture.whole else walls.build(edges, sheet)
+        return _place(sheet, texture, enters, seed, True, pen, frame(sheet, texture, pen))
+    borders = frame(sheet, texture, pen, None if texture.whole else edges)
     wanted: Cells = sheet.tone.copy()
     best: tuple[float, list[Strokes]] | None = None
     for _ in range(ROUNDS):
@@ -151,6 +151,11 @@ def blast_tile(
     return best[1]
 
 
+def frame(sheet: Sheet, texture: Texture, pen: float | None, edges: EdgeList | None = None) -> walls.Walls:
+    """Where the texture's strokes must end: at the frame, and at the edges."""
+    return walls.build(edges, sheet, pen or float(texture.strokes.widths.max()))
+
+
 def _place(
     sheet: Sheet,
     texture: Texture,
@@ -158,22 +163,21 @@ def _place(
     seed: int,
     strict: bool,
     pen: float | None,
-    borders: walls.Walls | None,
+    borders: walls.Walls,
 ) -> list[Strokes]:
     """One pass over all copies in order of priority; strokes that may be trimmed end at the borders."""
     out = []
     plain = strict or texture.whole
     for part in copies(texture, enters, sheet, seed, 2.0 if strict else SLACK, pen):
-        points, first, widths, bounded = part.points, part.first, part.widths, None
+        points, first, widths = part.points, part.first, part.widths
         pieces = curves.pieces_of(points, first, STEP_PT)
         lines = curves.sample(points, first, pieces)
-        if borders is not None:
-            none = np.zeros(len(widths))
-            cuts = walls.cut(borders, lines, widths + sheet.gain_pt, (none, none), sheet.width, sheet.height)
-            points, first = curves.cut(points, first, pieces, cuts.curve, cuts.start, cuts.end)
-            widths, bounded = widths[cuts.curve], cuts.bounded
-            pieces = curves.pieces_of(points, first, STEP_PT)
-            lines = curves.sample(points, first, pieces)
+        none = np.zeros(len(widths))
+        cuts = walls.cut(borders, lines, widths + sheet.gain_pt, (none, none))
+        points, first = curves.cut(points, first, pieces, cuts.curve, cuts.start, cuts.end)
+        widths, bounded = widths[cuts.curve], cuts.bounded
+        pieces = curves.pieces_of(points, first, STEP_PT)
+        lines = curves.sample(points, first, pieces)
         n = len(widths)
         if n == 0:
             continue
@@ -201,9 +205,17 @@ def draw_by_threshold(sheet: Sheet, texture: Texture, enters: Floats, seed: int,
     """Each stroke of each tile wherever the tone exceeds the stroke's threshold; whole strokes by their middle."""
     cells = np.array([sheet.columns / sheet.width, sheet.rows / sheet.height])
     out = []
+    borders = frame(sheet, texture, pen)
     for part in copies(texture, enters, sheet, seed, 0.0, pen):
         pieces = curves.pieces_of(part.points, part.first, STEP_PT)
-        lines = curves.sample(part.points, part.first, pieces)
+        none = np.zeros(len(part.widths))
+        cuts = walls.cut(borders, curves.sample(part.points, part.first, pieces), none, (none, none))
+        if len(cuts.curve) == 0:
+            continue
+        points, first = curves.cut(part.points, part.first, pieces, cuts.curve, cuts.start, cuts.end)
+        part = Copies(points, first, part.widths[cuts.curve], part.enters[cuts.curve])
+        pieces = curves.pieces_of(points, first, STEP_PT)
+        lines = curves.sample(points, first, pieces)
         n = len(part.widths)
         owner = np.repeat(np.arange(n), np.diff(lines.first))
         at = np.floor(lines.points * cells).astype(np.int64)

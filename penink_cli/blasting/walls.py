@@ -29,7 +29,8 @@ class Walls:
     """Segments (m, 4), points, and a grid over them: the walls near cell c are items[begin[c] : begin[c + 1]].
 
     inside: (m,) how much of half a pen's width a stroke ends before each: all of it at an edge, nothing at the frame,
-    where what reaches over is not seen and what is left out would be missed.
+    which is half a pen within already.
+    box: least x and y, greatest x and y that a stroke's middle line may have.
     """
 
     segments: Floats
@@ -38,6 +39,7 @@ class Walls:
     items: Ints
     columns: int
     rows: int
+    box: tuple[float, float, float, float]
 
 
 def strong_edges(edges: EdgeList, sheet: Sheet) -> Floats:
@@ -65,10 +67,12 @@ def strong_edges(edges: EdgeList, sheet: Sheet) -> Floats:
     return np.concatenate([a[strong], b[strong]], axis=1)
 
 
-def build(edges: EdgeList | None, sheet: Sheet) -> Walls:
-    """The frame and the strong edges of the picture on the sheet."""
+def build(edges: EdgeList | None, sheet: Sheet, pen_pt: float) -> Walls:
+    """The frame, so far within that no stroke's ink reaches over it, and the strong edges of the picture."""
     w, h = sheet.width, sheet.height
-    segments: Floats = np.array([[0, 0, w, 0], [w, 0, w, h], [w, h, 0, h], [0, h, 0, 0]], float)
+    # half of what the pen is pressed to at the most, but some of a tiny sheet must be left
+    d = min(0.62 * pen_pt, 0.25 * w, 0.25 * h)
+    segments: Floats = np.array([[d, d, w - d, d], [w - d, d, w - d, h - d], [w - d, h - d, d, h - d], [d, h - d, d, d]])
     if edges is not None and len(edges.edges):
         segments = np.concatenate([segments, strong_edges(edges, sheet)])
     # no piece is longer than a cell, so that the bounding boxes touch few cells
@@ -87,7 +91,7 @@ def build(edges: EdgeList | None, sheet: Sheet) -> Walls:
     cell = (lo[which, 1] + k // wide[which]) * columns + lo[which, 0] + k % wide[which]
     order = np.argsort(cell, kind="stable")
     begin = np.searchsorted(cell[order], np.arange(columns * rows + 1))
-    return Walls(segments, inside, begin.astype(np.int64), np.ascontiguousarray(which[order]), columns, rows)
+    return Walls(segments, inside, begin.astype(np.int64), np.ascontiguousarray(which[order]), columns, rows, (d, d, w - d, h - d))
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,7 +108,7 @@ class Pieces:
 
 
 def cut(
-    walls: Walls, lines: curves.Polylines, painted: Floats, slack: tuple[Floats, Floats], width: float, height: float
+    walls: Walls, lines: curves.Polylines, painted: Floats, slack: tuple[Floats, Floats]
 ) -> Pieces:
     """Cut polylines where they cross walls, less half of what they paint, and leave out what is outside the frame.
 
@@ -150,10 +154,11 @@ def cut(
     # slack that reaches no wall goes; so does what lies wholly in it
     start = np.where(wall[left] == 0, start + slack[0][curve], start)
     end = np.where(wall[left + 1] == 0, end - slack[1][curve], end)
-    keep = (end - start) * step[curve] > SHORTEST_PT
+    keep = ((end - start) * step[curve] > SHORTEST_PT) | (count[curve] == 1)
     middle = np.clip(0.5 * (start + end), 0, count[curve] - 1)
     lo = np.minimum(middle.astype(np.int64), count[curve] - 1)
     p = points[lines.first[curve] + lo]
-    keep &= (p[:, 0] >= 0) & (p[:, 0] <= width) & (p[:, 1] >= 0) & (p[:, 1] <= height)
+    low_x, low_y, high_x, high_y = walls.box
+    keep &= (p[:, 0] >= low_x) & (p[:, 0] <= high_x) & (p[:, 1] >= low_y) & (p[:, 1] <= high_y)
     bounded = wall[left] | (wall[left + 1] << 1)
     return Pieces(curve[keep], start[keep], end[keep], bounded[keep].astype(np.uint8))
