@@ -22,8 +22,9 @@ cdef class Scene:
     cdef int* node_vertex
     cdef int* node_low
     cdef int* node_high
-    cdef int* node_cell_start
-    cdef int* node_cell
+    cdef int node_across
+    cdef int* node_start
+    cdef int* node_sorted
     cdef int* arc_start
     cdef int* arc_to
     cdef double* arc_length
