@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from penink_cli.errors import ParameterError, printable
-from penink_cli.options import LENGTH, Length
+from penink_cli.options import LENGTH, Finite, Length
 from penink_cli.papers import paper_size
 from penink_cli.streams import reading, source_name
 
@@ -90,6 +90,16 @@ colour_option = click.option(
 )
 
 
+def gain_option(function: F) -> F:
+    """--device-dpi, for outputs that add nothing to a stroke's width."""
+    return click.option(
+        "--device-dpi",
+        type=Finite(10, 100_000),
+        metavar="N",
+        help="Draw the strokes as wide as a printer of N dots an inch paints them, for which blast made them.",
+    )(function)
+
+
 def travel_options(function: F) -> F:
     """--order, --join, --speed."""
     for decorate in (
@@ -124,6 +134,15 @@ def read_layers(files: Sequence[str]) -> list[Strokes]:
         with reading(path) as stream:
             layers.append(strokes.read(stream, source_name(path)))
     return layers
+
+
+def as_printed(layers: Sequence[Strokes], device_dpi: float | None) -> list[Strokes]:
+    """The layers with what a printer adds to their width, if one is named."""
+    if device_dpi is None:
+        return list(layers)
+    from penink_cli.formats.gain import widened
+
+    return [widened(layer, device_dpi) for layer in layers]
 
 
 def for_a_pen(

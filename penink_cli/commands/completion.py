@@ -2,23 +2,29 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import click
+
+from penink_cli.options import output_options
+from penink_cli.streams import writing
 
 
 @click.command(name="completion")
 @click.argument("shell", type=click.Choice(["bash", "zsh", "fish"]))
-@click.help_option("-h", "--help")
-def completion(shell: str) -> None:
-    """Print what makes a shell complete subcommands, options and their values.
+@output_options
+def completion(shell: str, output: str | None, **_: Any) -> None:
+    """Print what makes a shell complete penink's words.
 
     \b
     penink completion bash > ~/.local/share/bash-completion/completions/penink
     penink completion zsh > ~/.zfunc/_penink
     penink completion fish > ~/.config/fish/completions/penink.fish
 
-    For zsh the folder must be in fpath before compinit is called. A package that is installed for
+    Subcommands, options and the values of many are completed. For zsh the folder must be in fpath before compinit is called. A package that is installed for
     all users brings these files along.
     """
     from penink_cli.manual import completion_script
 
-    click.echo(completion_script(shell), nl=False)
+    with writing(output, binary=False) as out:
+        out.write(completion_script(shell).encode("ascii"))

@@ -6,7 +6,14 @@ from typing import Any
 
 import click
 
-from penink_cli.layer_options import colour_option, files_argument, page_options, read_layers
+from penink_cli.layer_options import (
+    as_printed,
+    colour_option,
+    files_argument,
+    gain_option,
+    page_options,
+    read_layers,
+)
 from penink_cli.options import output_options
 from penink_cli.streams import writing
 
@@ -15,6 +22,7 @@ from penink_cli.streams import writing
 @files_argument
 @page_options
 @colour_option
+@gain_option
 @output_options
 def to_pdf(
     files: tuple[str, ...],
@@ -22,6 +30,7 @@ def to_pdf(
     margin: float,
     landscape: bool,
     colours: tuple[tuple[float, float, float], ...],
+    device_dpi: float | None,
     output: str | None,
     **_: Any,
 ) -> None:
@@ -37,7 +46,7 @@ def to_pdf(
     from penink_cli.formats import pdf
     from penink_cli.formats.page import lay_out
 
-    layers = read_layers(files)
+    layers = as_printed(read_layers(files), device_dpi)
     page = lay_out(layers, paper, margin, landscape)
     with writing(output) as out:
         pdf.write(out, layers, page, colours)

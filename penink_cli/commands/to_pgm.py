@@ -7,7 +7,7 @@ from typing import Any
 import click
 
 from penink_cli.errors import ParameterError
-from penink_cli.layer_options import files_argument, page_options, read_layers
+from penink_cli.layer_options import as_printed, files_argument, gain_option, page_options, read_layers
 from penink_cli.options import Finite, output_options, processors, threads_option
 from penink_cli.progress import progress
 from penink_cli.streams import writing
@@ -20,6 +20,7 @@ def _pixels(
     landscape: bool,
     dpi: float,
     bits: int,
+    device_dpi: float | None,
     threads: int | None,
     output: str | None,
     max_pixels: int,
@@ -30,7 +31,7 @@ def _pixels(
     from penink_cli.formats.pgm import check_size
     from penink_cli.formats.raster import cover
 
-    layers = read_layers(files)
+    layers = as_printed(read_layers(files), device_dpi)
     page = lay_out(layers, paper, margin, landscape)
     width, height = cover.size(page, dpi)
     check_size(width, height, max_pixels)
@@ -68,6 +69,7 @@ def _options(function: Any) -> Any:
             help="Bits a pixel; with 1 a pixel is black if ink covers half of it.  [default: 8]",
         ),
         page_options,
+        gain_option,
         threads_option,
         output_options,
     ):
@@ -78,7 +80,7 @@ def _options(function: Any) -> Any:
 @click.command(name="to-pgm")
 @_options
 def to_pgm(output: str | None, **options: Any) -> None:
-    """Draw strokes into a grey image, by the area of each pixel that ink covers.
+    """Draw strokes into a grey image, by the area that ink covers.
 
     The image is PGM, or PNG where the name of -o ends in .png (to-png writes PNG anywhere). Several
     FILEs are drawn over one another.
@@ -93,7 +95,7 @@ def to_pgm(output: str | None, **options: Any) -> None:
 @click.command(name="to-png")
 @_options
 def to_png(output: str | None, **options: Any) -> None:
-    """Draw strokes into a PNG image, by the area of each pixel that ink covers.
+    """Draw strokes into a PNG image, by the area that ink covers.
 
     The same picture as to-pgm's. Several FILEs are drawn over one another.
 

@@ -7,7 +7,7 @@ from typing import Any
 import click
 
 from penink_cli.layer_options import colour_option, files_argument, page_options, read_layers
-from penink_cli.options import output_options
+from penink_cli.options import Finite, output_options
 from penink_cli.streams import writing
 
 
@@ -15,6 +15,12 @@ from penink_cli.streams import writing
 @files_argument
 @page_options
 @colour_option
+@click.option(
+    "--device-dpi",
+    type=Finite(10, 100_000),
+    metavar="N",
+    help="Narrow the strokes by what a printer of N dots an inch adds; for strokes blasted with --device-dpi none.",
+)
 @click.option("--compress", is_flag=True, help="Deflate the strokes: half the size, for PostScript Level 3.")
 @output_options
 def to_ps(
@@ -23,6 +29,7 @@ def to_ps(
     margin: float,
     landscape: bool,
     colours: tuple[tuple[float, float, float], ...],
+    device_dpi: float | None,
     compress: bool,
     output: str | None,
     **_: Any,
@@ -44,6 +51,10 @@ def to_ps(
     from penink_cli.travel.order import ordered
 
     layers = read_layers(files)
+    if device_dpi is not None:
+        from penink_cli.formats.gain import narrowed
+
+        layers = [narrowed(layer, device_dpi) for layer in layers]
     page = lay_out(layers, paper, margin, landscape)
     with writing(output, binary=False) as out:
         postscript.write(out, layers, page, colours, compress, order=partial(ordered, improve=False))

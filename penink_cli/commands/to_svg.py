@@ -7,9 +7,11 @@ from typing import Any
 import click
 
 from penink_cli.layer_options import (
+    as_printed,
     colour_option,
     files_argument,
     for_a_pen,
+    gain_option,
     page_options,
     read_layers,
     report_travel,
@@ -23,6 +25,7 @@ from penink_cli.streams import writing
 @files_argument
 @page_options
 @colour_option
+@gain_option
 @travel_options
 @verbose_option
 @output_options
@@ -32,6 +35,7 @@ def to_svg(
     margin: float,
     landscape: bool,
     colours: tuple[tuple[float, float, float], ...],
+    device_dpi: float | None,
     order: bool,
     join: float,
     speed: float | None,
@@ -53,7 +57,7 @@ def to_svg(
     from penink_cli.formats import svg
     from penink_cli.formats.page import lay_out
 
-    layers = read_layers(files)
+    layers = as_printed(read_layers(files), device_dpi)
     page = lay_out(layers, paper, margin, landscape)
     if order:
         layers = for_a_pen(layers, join, speed, verbose, quiet)

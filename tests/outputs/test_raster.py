@@ -19,6 +19,10 @@ def picture(layers, dpi, maxval=255, threads=1, page=None):
     return np.concatenate(list(cover.bands(layers, page or lay_out(layers), dpi, maxval, threads)))
 
 
+def tone(shot):
+    return 100 - shot.mean() / 2.55
+
+
 def oracle(drawing, dpi, fine=16):
     """Ink by distance: a point is inked if it is within half a pen of a curve, sampled finely."""
     w, h = cover.size(lay_out([drawing]), dpi)
@@ -122,3 +126,18 @@ def test_strokes_far_away_cost_nothing_and_do_nothing():
     shot = picture([far], 72)
     assert (shot[[0, 1, 2, 3, 6, 7, 8, 9]] == 255).all()
     assert (shot[[4, 5]] < 255).all()
+
+
+def test_strokes_widened_by_the_gain_are_what_a_printer_paints(tmp_path):
+    from penink_cli.formats.gain import narrowed, widened
+    from tests.outputs.test_postscript import written
+
+    drawing = crosshatch(1200, 216)
+    size = ("-dGraphicsAlphaBits=1", "-g1800x1800")
+    (tmp_path / "a.eps").write_bytes(written([drawing]))
+    printed = ghostscript(tmp_path / "a.eps", 600, False, *size)
+    assert tone(printed) - tone(picture([drawing], 600)) > 3  # what it is all about
+    assert abs(tone(printed) - tone(picture([widened(drawing, 600)], 600))) < 0.5
+    (tmp_path / "b.eps").write_bytes(written([narrowed(drawing, 600)]))
+    assert abs(tone(ghostscript(tmp_path / "b.eps", 600, False, *size)) - tone(picture([drawing], 600))) < 0.5
+    assert len(widened(strokes_of([], 1), 600)) == 0
