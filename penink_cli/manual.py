@@ -54,19 +54,42 @@ def man_page(name: str | None) -> str:
     lines += [".SH OPTIONS"]
     for left, text in _options(command, context):
         lines += [".TP", rf"\fB{_escaped(left)}\fR", _escaped(text) or r"\&"]
+    if name is not None and isinstance(command, click.Group):
+        lines += _parts(command, context)
     if name is None:
         lines += [".SH SUBCOMMANDS"]
         for other, (_, text) in SUBCOMMANDS.items():
             lines += [".TP", rf".BR penink\-{_escaped(other)} (1)", _escaped(text)]
-    examples = [text for kind, text in paragraphs if kind == "lines"]
-    if examples:
-        lines += [".SH EXAMPLES"]
-        for text in examples:
-            lines += [".PP", ".nf", ".RS", *(_escaped(line) for line in text.split("\n")), ".RE", ".fi"]
+    examples = _examples(paragraphs)
+    lines += [".SH EXAMPLES", *examples] if examples else []
     lines += _COMMON.strip().split("\n")
     others = [r".BR penink (1)"] if name is not None else [r".BR gs (1)", r".BR make (1)"]
     lines += [".SH SEE ALSO", *others]
     return "\n".join(lines) + "\n"
+
+
+def _parts(group: click.Group, context: click.Context) -> list[str]:
+    """What the subcommands of a subcommand do, each with its options."""
+    lines = [".SH SUBCOMMANDS"]
+    for part in group.list_commands(context):
+        command = group.get_command(context, part)
+        assert command is not None
+        inner = click.Context(command, info_name=part, parent=context)
+        paragraphs = _paragraphs(command.help or "")
+        lines += [".SS " + _escaped(f"{inner.command_path} {' '.join(command.collect_usage_pieces(inner))}")]
+        lines += _running([(kind, text) for kind, text in paragraphs if kind == "text"])
+        for left, text in _options(command, inner):
+            lines += [".TP", rf"\fB{_escaped(left)}\fR", _escaped(text) or r"\&"]
+        lines += _examples(paragraphs)
+    return lines
+
+
+def _examples(paragraphs: list[tuple[str, str]]) -> list[str]:
+    lines = []
+    for kind, text in paragraphs:
+        if kind == "lines":
+            lines += [".PP", ".nf", ".RS", *(_escaped(line) for line in text.split("\n")), ".RE", ".fi"]
+    return lines
 
 
 def _paragraphs(text: str) -> list[tuple[str, str]]:

@@ -33,7 +33,7 @@ PNG_DPI = 150.0
 @click.option("--width", type=LENGTH, default="6in", show_default=True, help="Width on paper: 4in, 100mm.")
 @click.option("--pen", type=LENGTH, help="Draw everything with one pen of this width.  [default: the texture's]")
 @click.option("--gamma", type=Finite(0.05, 20), default=1.0, metavar="G", help="Tone curve: grey is raised to it.")
-@click.option("--seed", type=click.IntRange(0, 2**62), default=0, show_default=True, metavar="N")
+@click.option("--seed", type=click.IntRange(0, 2**62), default=0, show_default=True, metavar="N", help="Another hand.")
 @click.option(
     "--device-dpi",
     type=DeviceDpi(),

@@ -14,7 +14,7 @@ from penink_cli.streams import writing
 @click.command()
 @filter_options
 def pack(file: str | None, output: str | None, max_pixels: int, **_: Any) -> None:
-    """Pack an illustration and all its members in one small file.
+    """Pack an illustration and its members in one small file.
 
     FILE is an illustration's manifest; the files it names are found beside it. The archive is a ZIP: unzipped, it is
     an illustration of loose files again, which draws the same strokes.

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     metavar="N|none",
     help="Resolution of the printer, which paints every dot that a stroke touches; none for plotters and screens.",
 )
-@click.option("--seed", type=click.IntRange(0, 2**62), default=0, show_default=True, metavar="N")
+@click.option("--seed", type=click.IntRange(0, 2**62), default=0, show_default=True, metavar="N", help="Another hand.")
 @click.option(
     "--layer",
     "chosen",

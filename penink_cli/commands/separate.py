@@ -54,7 +54,7 @@ def separate(
     invert: bool,
     **_: Any,
 ) -> None:
-    """Make the overlay of one layer: the photo's grey where the layer is, paper white elsewhere.
+    """Make the overlay of one layer: grey where it is, white elsewhere.
 
     What the layer is, is told by a mask, by a range of grey or by regions of an edge list. Overlays go
     through the same filters as photos.
