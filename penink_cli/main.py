@@ -8,7 +8,6 @@ then kill by that signal.
 from __future__ import annotations
 
 import contextlib
-import difflib
 import importlib
 import os
 import sys
@@ -67,6 +66,8 @@ class LazyGroup(click.Group):
     ) -> tuple[str | None, click.Command | None, list[str]]:
         """As click's, with a guess at what a wrong name was meant to be."""
         if args and not args[0].startswith("-") and args[0] not in SUBCOMMANDS:
+            import difflib  # for the rare mistake alone: it is slow to load
+
             near = difflib.get_close_matches(args[0], SUBCOMMANDS, n=1, cutoff=0.5)
             hint = f"did you mean {near[0]}?" if near else f"known are {', '.join(SUBCOMMANDS)}"
             raise click.UsageError(f"no subcommand {printable(args[0], 60)}; {hint}", ctx)

@@ -1,6 +1,9 @@
+cimport cython
+
 cdef int side_of_query(double ax, double ay, double bx, double by, double qx, double qy) noexcept nogil
 cdef int side_of_vertex(double px, double py, double qx, double qy, double ax, double ay) noexcept nogil
 
+@cython.final
 cdef class Scene:
     cdef list arrays
     cdef readonly int width, height
@@ -38,6 +41,7 @@ cdef class Scene:
     cdef bint bends_for(self, int node, double qx, double qy) noexcept nogil
     cdef bint clear(self, double x0, double y0, double x1, double y1) noexcept nogil
 
+@cython.final
 cdef class Finder:
     cdef readonly Scene scene
     cdef int row0, row1

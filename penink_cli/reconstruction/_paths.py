@@ -96,6 +96,7 @@ def distance(ax: cython.double, ay: cython.double, bx: cython.double, by: cython
     return sqrt((ax - bx) * (ax - bx) + (ay - by) * (ay - by))
 
 
+@cython.final  # calls are direct, and inlined
 @cython.cclass
 class Scene:
     """Edges in sample units, bucketed by unit cell; the nodes, and the arcs between them up to `reach` long."""
@@ -682,6 +683,7 @@ def taut(scene: Scene, node: cython.int, u: cython.int) -> cython.bint:
     )
 
 
+@cython.final  # calls are direct, and inlined
 @cython.cclass
 class Finder:
     """Shortest paths in one scene for one thread, with the bends next to each sample remembered.

@@ -20,6 +20,7 @@ T2 = cython.declare(cython.double, 1e-4)  # below this sum of B-spline weights p
 FAR = cython.declare(cython.float, 1e30)  # a distance no path has
 
 
+@cython.final
 @cython.cclass
 class Desk:
     """Scratch of one thread. Arrays of 64 hold one number a pixel of the tile, row by row."""

@@ -1,5 +1,8 @@
+cimport cython
+
 from penink_cli.reconstruction._paths cimport Finder, Scene
 
+@cython.final
 cdef class Tile:
     cdef Finder finder
     cdef Scene scene

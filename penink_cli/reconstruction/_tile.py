@@ -22,6 +22,7 @@ SLACK = cython.declare(cython.float, 1e-5)  # of the quick tests, in samples: te
 NEAR = cython.declare(cython.float, 2e-5)  # of the masks, in pixels: ten times the worst rounding of a float
 
 
+@cython.final  # calls are direct, and inlined
 @cython.cclass
 class Tile:
     """Work space of one thread for one tile after the other.
