@@ -4,6 +4,8 @@
 #   make test       the tests            make lint    ruff and mypy
 #   make bench      the measurements     make dist    wheel and source distribution
 #   make check-dist both, installed in an empty environment
+#   make fuzz       every reader against anything (SECONDS=600)
+#   make torture    a thousand runs killed, two hundred photographs
 #   make clean      remove what make made
 #
 # PYTHON is the interpreter to build the environment with, VENV the environment's folder.
@@ -16,7 +18,7 @@ INSTALLED := $(VENV)/.installed
 KERNELS   := $(shell sed -n 's/^sources = \["\(.*\)"\]/\1/p' pyproject.toml)
 BENCHES   := $(patsubst tests/benchmarks/%.py,tests.benchmarks.%,$(filter-out %/__init__.py %/_%,$(wildcard tests/benchmarks/*.py)))
 
-.PHONY: all install samples test lint bench dist check-dist clean needs needs-python
+.PHONY: all install samples test lint bench fuzz torture dist check-dist clean needs needs-python
 .DELETE_ON_ERROR:
 
 all: samples
@@ -44,6 +46,17 @@ test: $(INSTALLED) needs
 lint: $(INSTALLED)
 	$(BIN)/ruff check .
 	$(BIN)/mypy
+
+# Fuzz every reader for SECONDS in all; what is found stays in tests/data/found, and `make test` runs it.
+SECONDS ?= 600
+fuzz: $(INSTALLED)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check '.[fuzz]'
+	$(BIN)/python -m tests.fuzz $(SECONDS)
+
+# 1000 runs killed at random moments, and 200 photographs through the whole chain: half an hour each.
+torture: $(INSTALLED)
+	$(BIN)/python -m tests.faults.kills 1000
+	$(BIN)/python -m tests.faults.batch 200
 
 bench: $(INSTALLED) needs
 	@for bench in $(BENCHES); do echo "== $$bench"; PATH="$(BIN):$$PATH" $(BIN)/python -m $$bench || exit 1; done

@@ -15,7 +15,7 @@ import io
 import struct
 import warnings
 import zlib
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any, BinaryIO
 
 import numpy as np
@@ -39,7 +39,8 @@ SIGNATURES = (
     (b"RIFF", "WEBP"),
 )
 BAND = 1 << 20  # pixels converted at a time
-LEAST_BYTES = 64_000_000  # an encoded photograph may have these, or 8 for each pixel allowed
+BYTES_PER_PIXEL = 9  # of 16-bit RGBA that does not compress, and some
+METADATA = 1 << 24  # bytes that an encoded photograph may have besides
 RED, GREEN, BLUE = 299, 587, 114  # Rec. 601 luma, thousandths
 
 
@@ -60,37 +61,70 @@ def read_grey(stream: BinaryIO, source: str, max_pixels: int) -> GreyImage:
     if kind is None or (kind == "WEBP" and start[8:12] != b"WEBP"):
         shown = f"begins with {printable(start[:8].decode('latin-1'))!r}" if start else "it is empty"
         raise FormatError(f"not a PGM, PPM, PNG, JPEG, TIFF or WebP photograph: {shown}", source)
-    most = max(LEAST_BYTES, 8 * max_pixels)
-    encoded = start + stream.read(most)
-    if len(encoded) > most:
-        raise LimitError(f"photograph of more than {most} bytes (--max-pixels raises this limit)", source)
     try:
-        return _decoded(encoded, kind, max_pixels)
+        return _decoded(_whole(start, stream, kind, max_pixels), kind, max_pixels)
     except PeninkError as error:
         raise error.from_source(source) from None
 
 
-def _decoded(encoded: bytes, kind: str, max_pixels: int) -> GreyImage:
+def _whole(start: bytes, stream: BinaryIO, kind: str, max_pixels: int) -> io.BytesIO:
+    """All bytes of the photograph, as long as its beginning makes sense and the pixels allowed can need them."""
+    encoded = io.BytesIO(start)
+    encoded.seek(len(start))
+    most = METADATA + BYTES_PER_PIXEL * max_pixels
+    looked = False
+    while piece := stream.read(1 << 20):
+        encoded.write(piece)
+        if encoded.tell() > METADATA and not looked:
+            looked = True
+            _check_beginning(encoded.getvalue(), kind, max_pixels)
+        if encoded.tell() > most:
+            raise LimitError(f"photograph of more than {most} bytes (--max-pixels raises this limit)")
+    return encoded
+
+
+def _check_beginning(encoded: bytes, kind: str, max_pixels: int) -> None:
+    """Raise FormatError or LimitError where the rest of a long stream is not worth waiting for."""
     from PIL import Image
+
+    order = "<" if encoded[:1] == b"I" else ">"
+    if kind == "TIFF" and struct.unpack_from(f"{order}4xI", encoded)[0] >= len(encoded) - 1024:
+        return  # its header comes last
+    with _pillow_errors(kind), Image.open(io.BytesIO(encoded), formats=(kind,)) as image:
+        pgm.check_size(*image.size, max_pixels)
+
+
+@contextlib.contextmanager
+def _pillow_errors(kind: str) -> Iterator[None]:
+    """Turn what Pillow raises, which may be nearly anything on damaged files, into errors of ours."""
+    from PIL import Image, UnidentifiedImageError
 
     Image.MAX_IMAGE_PIXELS = None  # our own limit stands in its place, and is an error
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # of damaged metadata, which are of no use here
-            with Image.open(io.BytesIO(encoded), formats=(kind,)) as image:
-                pgm.check_size(*image.size, max_pixels)
-                if kind == "PNG":
-                    _check_png(encoded, *image.size)
-                image.load()
-                _turn_upright(image)
-                return _grey(image)
+            yield
     except PeninkError:
         raise
     except MemoryError:
         raise LimitError("does not fit into memory") from None
-    except Exception as error:  # Pillow's decoders raise nearly anything on damaged files
+    except UnidentifiedImageError:
+        raise FormatError(f"damaged {kind} photograph: its header makes no sense") from None
+    except Exception as error:
         why = str(error) or type(error).__name__
         raise FormatError(f"damaged {kind} photograph: {printable(why, 60)}") from error
+
+
+def _decoded(encoded: io.BytesIO, kind: str, max_pixels: int) -> GreyImage:
+    from PIL import Image
+
+    with _pillow_errors(kind), Image.open(encoded, formats=(kind,)) as image:
+        pgm.check_size(*image.size, max_pixels)
+        if kind == "PNG":
+            _check_png(encoded.getvalue(), *image.size)
+        image.load()
+        _turn_upright(image)
+        return _grey(image)
 
 
 def _turn_upright(image: Image.Image) -> None:

@@ -156,10 +156,7 @@ def _is_number(value: Any) -> bool:
 
 
 def _json(line: bytes, line_number: int) -> Any:
-    try:
-        return strict_json.loads(line)
-    except FormatError as error:
-        raise FormatError(f"line {line_number}: {error.message}") from None
+    return strict_json.loads(line, None, f"line {line_number}")
 
 
 def _shown(value: Any) -> str:

@@ -6,6 +6,8 @@ import io
 from collections.abc import Callable
 from typing import Any
 
+from penink_cli.errors import PeninkError
+
 MAX_PIXELS = 100_000
 SOURCE = "given.file"
 
@@ -34,12 +36,62 @@ def _strokes(data: bytes) -> Any:
     return strokes.read(io.BytesIO(data), SOURCE)
 
 
+def _texture(data: bytes) -> Any:
+    from penink_cli.formats import texture
+
+    return texture.read(io.BytesIO(data), SOURCE)
+
+
+def _archive(data: bytes) -> Any:
+    from penink_cli.formats import archive
+
+    return archive.read(data, SOURCE)
+
+
+def _illustration(data: bytes) -> Any:
+    """A manifest whose every member is the small image, or the edge list, that fits."""
+    from penink_cli.formats import illustration
+    from penink_cli.texture_options import find_texture
+
+    def fetch(name: str) -> bytes:
+        if "edge" in name:
+            return b'{"format": "penink-edges", "version": 1, "width": 2, "height": 2, "vertices": [], "edges": []}'
+        return b"P5 2 2 255\n1234"
+
+    return illustration.read(data, SOURCE, fetch, find_texture, MAX_PIXELS)
+
+
+def _compact(data: bytes) -> Any:
+    """A member of a packed illustration, by its first bytes."""
+    from penink_cli.formats import compact
+
+    try:
+        if data.startswith(compact.SAMPLES):
+            return compact.samples_from(data, MAX_PIXELS)
+        return compact.edges_from(data) if data.startswith(compact.EDGES) else compact.text_from(data)
+    except PeninkError as error:
+        raise error.from_source(SOURCE) from None
+
+
 READERS: dict[str, Callable[[bytes], Any]] = {
     "pgm": _pgm,
     "photo": _photo,
     "edges": _edges,
     "strokes": _strokes,
+    "texture": _texture,
+    "illustration": _illustration,
+    "archive": _archive,
+    "compact": _compact,
 }
+
+
+def judge(reader: str, data: bytes) -> None:
+    """Any bytes are a value, or one error of ours: short, printable, and of this file. Anything else is raised."""
+    try:
+        READERS[reader](data)
+    except PeninkError as error:
+        text = str(error)
+        assert text.startswith(f"{SOURCE}: ") and text.isprintable() and len(text) < 400, text
 
 
 def written(write: Callable[..., Any], value: Any) -> bytes:

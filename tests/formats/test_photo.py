@@ -276,6 +276,28 @@ def test_a_small_file_that_declares_a_huge_picture():
             read(png(width, height, b""), 10**8)
 
 
+@pytest.mark.parametrize(
+    "start", [b"\x89PNG\r\n\x1a\n", b"\xff\xd8\xff", b"II*\x00\x08\x00\x00\x00", b"RIFF\x00\x00\x00\x00WEBP"]
+)
+def test_a_stream_of_nothing_that_only_begins_like_a_photograph_is_not_read_to_its_end(start):
+    class Endless(io.BytesIO):
+        def read(self, size: int = -1) -> bytes:
+            return super().read(size) or bytes(size)
+
+    stream = Endless(start)
+    with pytest.raises(FormatError, match="its header makes no sense"):
+        photo.read_grey(stream, "p.img", 10**9)
+
+
+def test_a_long_photograph_is_read():
+    """Longer than what is looked at in advance: many pages, or much metadata."""
+    pages = {"save_all": True, "append_images": [Image.new("RGB", (900, 900))] * 8}
+    data = saved(Image.fromarray(COLOUR), "TIFF", **pages)
+    assert len(data) > photo.METADATA and close(read(data, 10**6), luma(COLOUR))
+    first = saved(Image.new("RGB", (3000, 2000), (9, 99, 199)), "TIFF")
+    assert len(first) > photo.METADATA and read(first, 10**7).values.shape == (2000, 3000)
+
+
 def test_a_bomb_of_compressed_rows_is_not_blown_up():
     assert read(png(10, 10, bytes(10**8))).values.shape == (10, 10)
 

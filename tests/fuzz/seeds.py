@@ -1,0 +1,57 @@
+"""Small valid files of every format, for the fuzzer to begin with."""
+
+from __future__ import annotations
+
+import io
+import json
+from collections.abc import Iterator
+
+import numpy as np
+
+from penink_cli.formats import archive, compact, edge_list, pgm
+from penink_cli.model import EdgeList, GreyImage
+from tests.faults.calls import encoded, strokes_text
+
+IMAGE = GreyImage((37 * np.arange(20) % 256).astype(np.uint8).reshape(4, 5))
+EDGES = EdgeList(5, 4, np.array([[1, 1], [2, 1.5], [3, 3]]), np.array([[0, 1], [1, 2]]), np.array([0.5, 1]))
+TEXTURE = {
+    "format": "penink-texture", "version": 1, "name": "t", "width": 9, "height": 9, "whole": False,
+    "strokes": [{"priority": 0, "width": 0.4, "points": [[0, 8], [3, 8], [6, 9], [9, 9]]}],
+}  # fmt: skip
+ILLUSTRATION = {
+    "format": "penink-illustration", "version": 1, "width": 9, "height": 9,
+    "layers": [{"name": "l", "samples": "a", "edges": "a.edges", "pen": 0.5, "outline": {"regions": [[1, 1]]}}],
+}  # fmt: skip
+
+
+def seeds(reader: str) -> Iterator[bytes]:
+    """Valid inputs of one of READERS."""
+    if reader in ("pgm", "photo"):
+        yield encoded(pgm.write, IMAGE)
+        yield b"P2 # plain\n2 2\n300\n1 2 3 300\n"
+        yield encoded(pgm.write, GreyImage(IMAGE.values.astype(np.uint16) * 9, 4000))
+    if reader == "photo":
+        from PIL import Image
+
+        yield b"P3 1 1 9 1 2 3"
+        picture = Image.fromarray(np.dstack([IMAGE.values] * 4))
+        for kind in ("PNG", "TIFF", "WEBP", "JPEG"):
+            out = io.BytesIO()
+            (picture.convert("RGB") if kind == "JPEG" else picture).save(out, kind)
+            yield out.getvalue()
+    if reader == "edges":
+        yield encoded(edge_list.write, EDGES)
+        yield json.dumps(json.loads(encoded(edge_list.write, EDGES)), indent=1, sort_keys=True).encode()
+    if reader == "strokes":
+        yield strokes_text(9, 9, (0.5, [[1, 1], [2, 2.5], [-3, 3], [4, 4]]), (1, [[5, 5]]))
+        yield b'{"seed":1,"layer":"\\u00e9","version":1,"format":"penink-strokes","height":1e1,"width":9}\r\n'
+    if reader == "texture":
+        yield json.dumps(TEXTURE).encode()
+    if reader == "illustration":
+        yield json.dumps(ILLUSTRATION).encode()
+    if reader == "archive":
+        yield archive.pack({"illustration.json": b"{}", "0.samples": b"PIs1"})
+    if reader == "compact":
+        yield compact.samples_bytes(IMAGE)
+        yield compact.edges_bytes(EDGES, 80, 64)
+        yield compact.text_bytes(b"some text, some text")
