@@ -374,12 +374,15 @@ def settle(
     run_last: cython.int[::1],
     places: cython.double[:, ::1],
     furthest: cython.double,
+    width: cython.longlong,
+    height: cython.longlong,
     sweeps: cython.int,
 ) -> None:
     """Move vertices to where the segments around them fit the points they stand for best.
 
     Each in turn goes to its own least-squares optimum with its neighbours held (Gauss-Seidel),
-    at most `furthest` from where it started, and only where its segments still fit.
+    at most `furthest` from where it started, within the frame (width × height units), and only
+    where its segments still fit.
 
     movable: vertices; those segments are around[around_first[v] : around_first[v + 1]]; segment s
     stands for the points places[run_first[s] : run_last[s] + 1], in units.
@@ -436,5 +439,7 @@ def settle(
                 vy *= t
             x = start[v, 0] + cython.cast(cython.longlong, floor(vx + 0.5))
             y = start[v, 1] + cython.cast(cython.longlong, floor(vy + 0.5))
+            x = min(width - 1, max(1, x))
+            y = min(height - 1, max(1, y))
             if x != planar.vertices[v, 0] or y != planar.vertices[v, 1]:
                 _move(planar, v, around, around_first[v], around_first[v + 1], x, y)

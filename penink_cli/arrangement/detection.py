@@ -43,12 +43,11 @@ def detect_edges(
     height, width = grey.shape
     noise = noise_level(grey)
     if sigma is None:
-        sigma = float(np.clip(0.4 + 0.15 * 255 * noise, 0.6, 1.4))
+        sigma = float(np.clip(0.3 + 0.275 * 255 * noise, 0.6, 1.6))
     steepness = 1 / (np.sqrt(2 * np.pi) * np.hypot(sigma, _CAMERA_BLUR))  # of an edge of step 1, grey per pixel
-    if high is None:
-        unrest = noise / (5.013 * sigma * sigma)  # the noise of each component of the gradient
-        high = max(0.05, 5 * unrest / steepness)
-    low = min(0.5 * high if low is None else low, high)
+    unrest = noise / (5.013 * sigma * sigma) / steepness  # the noise of the gradient, as a step
+    high = max(0.05, 6 * unrest) if high is None else high
+    low = min(max(0.5 * high, 3.5 * unrest) if low is None else low, high)
     points = edge_points(grey, sigma, low * steepness)
     chains = _telling(points, link_chains(points), high * steepness, min_length)
     if not len(chains):

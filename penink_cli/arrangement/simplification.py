@@ -72,7 +72,10 @@ def simplify(planar: Planar, tolerance: float, width: int, height: int) -> None:
     around = np.concatenate([live, live])[np.argsort(tail, kind="stable")].astype(np.int32)
     degree = np.bincount(tail, minlength=len(vertices))
     around_first = np.concatenate([[0], np.cumsum(degree)]).astype(np.int32)
-    limit = to_units(np.array([[width, height]], float))
+    limit = to_units(np.array([width, height], float))
     inner = ((vertices > 0) & (vertices < limit)).all(axis=1)
     movable = np.flatnonzero((degree > 1) & inner).astype(np.int32)
-    _planar.settle(planar, movable, around_first, around, run_first, run_last, places, tolerance / UNIT, _SWEEPS)
+    furthest = tolerance / UNIT
+    _planar.settle(
+        planar, movable, around_first, around, run_first, run_last, places, furthest, *limit.tolist(), _SWEEPS
+    )

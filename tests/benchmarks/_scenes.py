@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from scipy.ndimage import gaussian_filter
+from scipy.spatial import cKDTree
 
 LEVEL = 1 / 255
 FINE = 8  # points a pixel, along each axis, of the truth that a pixel averages
@@ -111,28 +112,38 @@ def polygon(corners, grey):
     return Shape(points, corners, inside, grey)
 
 
-def random_scene(seed, size=160, least=25 * LEVEL):
-    """Some discs and polygons on one another, each step between neighbours at least `least`."""
+def random_scene(seed, size=200, shapes=6, least=25 * LEVEL):
+    """Discs and convex polygons on one another, every step between neighbours at least `least`.
+
+    Outlines cross at an angle or keep 6 pixels apart: what lies nearer is no longer two edges to a blurred photo.
+    """
     random = np.random.default_rng(seed)
-    levels = np.arange(0.08, 0.93, least * 1.25)
+    levels = random.permutation(np.linspace(0.06, 0.94, shapes + 1))
+    levels = np.delete(levels, np.argmin(np.abs(levels - 0.5)))
+    assert 0.88 / shapes > 1.2 * least
     scene = Scene(size, [])
-
-    def grey():
-        slope = random.uniform(-1, 1, 2) * 0.1 * least / size * 2
-        value = levels[random.integers(len(levels))]
-        return value, slope[0], slope[1]
-
-    while len(scene.shapes) < 7:
-        x, y = random.uniform(0.1, 0.9, 2) * size
+    while len(scene.shapes) < shapes:
+        slope = random.uniform(-0.1, 0.1, 2) * least / size
+        grey = levels[len(scene.shapes)], slope[0], slope[1]
+        x, y = random.uniform(0.12, 0.88, 2) * size
         if random.random() < 0.5:
-            scene.shapes.append(disc(x, y, random.uniform(8, 0.3 * size), grey()))
+            shape = disc(x, y, random.uniform(10, 0.3 * size), grey)
         else:
             n = random.integers(3, 6)
-            angle = np.sort(random.uniform(0, 2 * np.pi, n))
-            gaps = np.diff(np.append(angle, angle[0] + 2 * np.pi))
-            if gaps.min() < 0.7 or gaps.max() > 2.8:
-                continue
-            radius = random.uniform(12, 0.35 * size)
-            corners = np.column_stack([x + radius * np.cos(angle), y + radius * np.sin(angle)])
-            scene.shapes.append(polygon(corners, grey()))
+            angle = random.uniform(0, 2 * np.pi) + (np.arange(n) + random.uniform(-0.25, 0.25, n)) * 2 * np.pi / n
+            radius = random.uniform(20, 0.35 * size)
+            shape = polygon(np.column_stack([x + radius * np.cos(angle), y + radius * np.sin(angle)]), grey)
+        if all(_apart(shape, other) for other in scene.shapes):
+            scene.shapes.append(shape)
     return scene
+
+
+def _apart(shape, other):
+    """Whether two outlines keep their distance, save around places where they cross at an angle."""
+    far, _ = cKDTree(other.points).query(shape.points[::4])
+    close = shape.points[::4][far < 6]
+    inside = other.inside(*shape.points.T)
+    crossings = shape.points[inside != np.roll(inside, -1)]
+    if not len(close):
+        return True
+    return bool(len(crossings)) and cKDTree(crossings).query(close)[0].max() < 12
