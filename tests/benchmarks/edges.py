@@ -1,0 +1,256 @@
+"""Edges and samples measured: ``python -m tests.benchmarks.edges`` (about three minutes; ``--quick`` half a minute).
+
+Positions of edges on rendered scenes; round trips photo → edges and samples reduced 4 × → photo; the
+grids that --auto chooses and what they take to store; a 12-megapixel photograph; hostile inputs.
+"""
+
+from __future__ import annotations
+
+import io
+import resource
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import numpy as np
+import skimage.data
+from PIL import Image
+from scipy.ndimage import gaussian_filter
+from scipy.spatial import cKDTree
+
+from penink_cli.arrangement import detection, validity
+from penink_cli.arrangement.detection import detect_edges
+from penink_cli.formats import compact, edge_list
+from penink_cli.model import EdgeList, GreyImage
+from penink_cli.reconstruction.camera import camera_blur
+from penink_cli.reconstruction.enlarge import enlarge, reconstruct
+from penink_cli.reconstruction.extraction import contaminated, extract_samples
+from penink_cli.reconstruction.grid import choose_grid
+from penink_cli.reconstruction.reduction import reduce
+from tests.benchmarks._scenes import random_scene
+
+PHOTOS = {"camera": 4.0, "coins": 4.0, "astronaut": 3.5, "coffee": 3.0, "chelsea": 2.5, "rocket": 2.0}
+DOWN = (Image.Resampling.BOX, Image.Resampling.BILINEAR, Image.Resampling.HAMMING, Image.Resampling.BICUBIC,
+        Image.Resampling.LANCZOS)  # fmt: skip
+UP = (Image.Resampling.BICUBIC, Image.Resampling.LANCZOS)
+
+
+def photograph(name: str) -> np.ndarray:
+    """A bundled photograph in grey, 0 … 1."""
+    pixels = getattr(skimage.data, name)()
+    if pixels.ndim == 3:
+        pixels = np.asarray(Image.fromarray(pixels[..., :3]).convert("L"))
+    return (pixels / 255).astype(np.float32)
+
+
+def along(edges: EdgeList, step: float = 0.1) -> np.ndarray:
+    """Points (n, 2) on the edges, evenly spaced."""
+    points = []
+    for a, b in edges.vertices[edges.edges]:
+        n = max(1, round(np.hypot(*(b - a)) / step))
+        points.append(a + (np.arange(n)[:, None] + 0.5) / n * (b - a))
+    return np.concatenate(points) if points else np.zeros((0, 2))
+
+
+def positions(scenes: int) -> None:
+    """Must show 1."""
+    print("edges of rendered scenes: distance from the true curve, pixels; found, false: % of length")
+    print("blur noise   median    95 %   found  false   corners  T-junctions closed")
+    for blur in (0.5, 1.0, 1.5):
+        for noise in (0, 2, 4):
+            errors, found, corners, tees = [], [], [], []
+            for seed in range(scenes):
+                scene = random_scene(seed)
+                edges = detect_edges(scene.photo(blur, noise, seed))
+                curve, _ = scene.curves()
+                seen = along(edges)
+                errors.append(cKDTree(curve).query(seen)[0])
+                inner = ((curve > 3) & (curve < scene.size - 3)).all(axis=1)
+                found.append(cKDTree(seen).query(curve[inner])[0] < 1)
+                ends = edges.vertices[np.bincount(edges.edges.ravel(), minlength=len(edges.vertices)) == 1]
+                for places, closed in zip(scene.junctions(), (corners, tees)):
+                    if len(places):
+                        here = cKDTree(seen).query(places)[0] <= 1
+                        closed.append(here & (cKDTree(ends).query(places)[0] > 3 if len(ends) else True))
+            error, hits = np.concatenate(errors), np.concatenate(found)
+            near = error[error < 1]
+            corner, tee = (np.concatenate(c) if c else np.zeros(0) for c in (corners, tees))
+            print(
+                f"{blur:4.1f} {noise:5d} {np.median(near):8.3f} {np.quantile(near, 0.95):7.3f} {100 * hits.mean():7.1f}"
+                f" {100 * (error >= 1).mean():6.1f}   {int(corner.sum())}/{len(corner)}    {int(tee.sum())}/{len(tee)}"
+            )
+
+
+def psnr(a: np.ndarray, b: np.ndarray, where: np.ndarray) -> float:
+    """Peak signal to noise ratio, dB."""
+    return float(-10 * np.log10(np.mean((a - b)[where] ** 2)))
+
+
+def best_plain(photo: np.ndarray, width: int, height: int, truth: np.ndarray, where: np.ndarray) -> float:
+    """The best of Pillow's filters down and up again."""
+    picture = Image.fromarray(photo.astype(np.float32))
+    again = [picture.resize((width, height), d).resize(picture.size, u) for d in DOWN for u in UP]
+    return max(psnr(np.clip(np.asarray(image), 0, 1), truth, where) for image in again)
+
+
+def seen_again(samples: np.ndarray, edges: EdgeList, width: int, height: int, blur: float) -> np.ndarray:
+    """Samples as 8 bits, enlarged, area-sampled with 2 × 2 points a pixel, and blurred."""
+    levels = np.round(samples.astype(float) * 255) / 255
+    fine = np.clip(reconstruct(levels, edges, 2 * width, 2 * height), 0, 1)
+    area = fine.reshape(height, 2, width, 2).mean(axis=(1, 3))
+    return gaussian_filter(area, blur) if blur else area
+
+
+def round_trips(scenes: int) -> None:
+    """Must show 2 and 3."""
+    print("\nreduced 4 x and enlarged again, gain over the best plain resampling, dB, within 3 px of edges (elsewhere)")
+    print("photograph  edges  blur  plain      --fit none       --fit lsq    wanted")
+    for name, wanted in PHOTOS.items():
+        photo = photograph(name)
+        height, width = (n - n % 4 for n in photo.shape)
+        photo = photo[:height, :width]
+        edges = detect_edges(photo)
+        blur = camera_blur(photo, edges)
+        near = contaminated(photo, edges, 3)
+        plain = [best_plain(photo, width // 4, height // 4, photo, where) for where in (near, ~near)]
+        clean = extract_samples(photo, edges)
+        gains = []
+        for fit in ("none", "lsq"):
+            samples = reduce(clean, edges, width // 4, height // 4, photo=photo, fit=fit)
+            again = seen_again(samples, edges, width, height, blur)
+            gains += [psnr(again, photo, where) - p for where, p in zip((near, ~near), plain)]
+        print(
+            f"{name:10s} {len(edges.edges):6d} {blur:5.2f} {plain[0]:6.2f}   {gains[0]:+6.2f} ({gains[1]:+5.2f})"
+            f"  {gains[2]:+6.2f} ({gains[3]:+5.2f})   {wanted:+.1f}"
+        )
+    print("rendered scenes, against the sharp truth")
+    for blur, noise in ((0.5, 0), (1.0, 0), (1.0, 2), (1.5, 4)):
+        rows = []
+        for seed in range(scenes):
+            scene = random_scene(seed)
+            photo, truth, n = scene.photo(blur, noise, seed).astype(np.float32), scene.sharp(), scene.size
+            edges = detect_edges(photo)
+            near = contaminated(photo, edges, 3)
+            plain = best_plain(photo, n // 4, n // 4, truth, near)
+            clean = extract_samples(photo, edges)
+            fitted = [reduce(clean, edges, n // 4, n // 4, photo=photo, fit=fit) for fit in ("none", "lsq")]
+            rows.append([psnr(seen_again(s, edges, n, n, 0), truth, near) - plain for s in fitted])
+        none, lsq = np.mean(rows, axis=0)
+        print(
+            f"blur {blur} noise {noise}    none {none:+6.2f}   lsq {lsq:+6.2f}   wanted {8 if blur <= 1 else 6.5:+.1f}"
+        )
+
+
+def storage(posters: tuple[str, ...]) -> None:
+    """Must show 4."""
+    print("\n--auto --max-error 8: the grid, and the bytes of samples and edges, compressed without loss")
+    for name in PHOTOS:
+        photo = photograph(name)
+        edges = detect_edges(photo)
+        clean = extract_samples(photo, edges)
+        start = time.perf_counter()
+        grid = choose_grid(clean, edges, photo=photo)
+        seconds = time.perf_counter() - start
+        height, width = grid.samples.shape
+        text = io.BytesIO()
+        edge_list.write(text, edges)  # type: ignore[arg-type]
+        image = GreyImage.from_grey(grid.samples)
+        size = len(compact.samples_bytes(image)) + len(compact.text_bytes(text.getvalue()))
+        line = f"{name:10s} {width} x {height} (factor {photo.shape[1] / width:.1f}), error {255 * grid.error:.2f}, "
+        line += f"{grid.empty_regions} empty regions, {size / 1e3:.1f} kB, {seconds:.1f} s"
+        if name in posters:
+            paper = _poster(image, text.getvalue())
+            line += f"; PostScript at 24 in {paper / 1e6:.1f} MB, {paper / size:.0f} times as much"
+        print(line, flush=True)
+
+
+def _poster(samples: GreyImage, edges: bytes) -> int:
+    from penink_cli.formats import pgm
+
+    with tempfile.TemporaryDirectory() as folder:
+        where = Path(folder)
+        with open(where / "s.pgm", "wb") as out:
+            pgm.write(out, samples)  # type: ignore[arg-type]
+        (where / "e.json").write_bytes(edges)
+        penink = f"{sys.executable} -m penink_cli"
+        subprocess.run(
+            f"{penink} enlarge -q -e e.json --scale 8 s.pgm | {penink} blast -q --texture crosshatch --width 24in"
+            f" | {penink} to-ps -q -o p.ps",
+            shell=True, check=True, cwd=where,
+        )  # fmt: skip
+        return (where / "p.ps").stat().st_size
+
+
+def large() -> None:
+    """Must show 5."""
+    print("\na photograph of 12 megapixels (astronaut, enlarged, noise of 2 levels), each filter a process")
+    base = Image.fromarray(np.uint8(photograph("astronaut") * 255)).resize((4000, 4000), Image.Resampling.BICUBIC)
+    grain = np.random.default_rng(0).normal(0, 2, (3000, 4000))
+    pixels = np.uint8(np.clip(np.round(np.asarray(base)[:3000] + grain), 0, 255))
+    with tempfile.TemporaryDirectory() as folder:
+        Image.fromarray(pixels).save(Path(folder) / "p.png")
+        total = 0.0
+        for command in (
+            "detect-edges p.png -o e.json",
+            "extract-samples -e e.json p.png -o s.pgm",
+            "reduce -e e.json --photo p.png --factor 4 s.pgm -o r.pgm",
+        ):
+            before, start = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
+            subprocess.run([sys.executable, "-m", "penink_cli", *command.split()], cwd=folder, check=True)
+            wall, after = time.perf_counter() - start, resource.getrusage(resource.RUSAGE_CHILDREN)
+            total += wall
+            processor = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+            print(f"{command.split()[0]:16s} {wall:5.1f} s, {processor:5.1f} s of processor")
+        print(f"together {total:.1f} s, largest process {after.ru_maxrss / 1e3:.0f} MB (wanted 10 s, 1000 MB)")
+
+
+def hostile(count: int) -> None:
+    """Must show 6."""
+    random = np.random.default_rng(1)
+    photos = [photograph(name) for name in PHOTOS]
+    edge_count = 0
+    telling = detection.TELLING
+    for k in range(count):
+        height, width = random.integers(1, 70, 2)
+        if k % 4 == 0:
+            grey = random.random((height, width))
+        elif k % 4 == 1:
+            grey = (random.random((height, width)) < random.random()).astype(float)
+        elif k % 4 == 2:
+            photo = photos[random.integers(len(photos))]
+            top, left = random.integers(0, photo.shape[0] - 70), random.integers(0, photo.shape[1] - 70)
+            grey = photo[top : top + height, left : left + width]
+        else:
+            y, x = np.mgrid[:height, :width]
+            a, b, c = random.uniform(0, 2), random.uniform(0, 2), random.uniform(0, 0.05)
+            grey = 0.5 + 0.5 * np.sin(a * x + b * y + c * (x * x + y * y))
+        detection.TELLING = telling if k % 3 == 0 else 0.0  # texture and noise left in: the hard case
+        edges = detect_edges(
+            grey, sigma=random.uniform(0.5, 2), high=10 ** random.uniform(-2.5, -0.3),
+            tolerance=10 ** random.uniform(-1.5, 1), min_length=random.uniform(0, 8),
+        )  # fmt: skip
+        edge_count += len(edges.edges)
+        edges = edge_list.rounded(edges)
+        edge_list.check(edges)
+        validity.check(edges)
+        if k % 20 == 0:
+            enlarge(GreyImage.from_grey(grey), edges, 2 * width, 2 * height)
+    detection.TELLING = telling
+    print(f"\n{count} hostile inputs, {edge_count} edges, every list accepted")
+
+
+def main() -> None:
+    """Print the tables."""
+    quick = "--quick" in sys.argv
+    positions(3 if quick else 8)
+    round_trips(2 if quick else 5)
+    hostile(500 if quick else 10_000)
+    if not quick:
+        storage(("camera",))
+        large()
+
+
+if __name__ == "__main__":
+    main()
