@@ -22,6 +22,11 @@ from penink_cli.streams import writing
     help="Narrow the strokes by what a printer of N dots an inch adds; for strokes blasted with --device-dpi none.",
 )
 @click.option("--compress", is_flag=True, help="Deflate the strokes: half the size, for PostScript Level 3.")
+@click.option(
+    "--self", "self_drawing", is_flag=True, help="FILE is an illustration: write an EPS that draws itself at any size."
+)
+@click.option("--level", type=click.Choice(["2", "3"]), default="3", help="With --self: PostScript level to keep to.")
+@click.option("--readable", is_flag=True, help="With --self: the program with its comments, not packed.")
 @output_options
 def to_ps(
     files: tuple[str, ...],
@@ -31,6 +36,9 @@ def to_ps(
     colours: tuple[tuple[float, float, float], ...],
     device_dpi: float | None,
     compress: bool,
+    self_drawing: bool,
+    level: str,
+    readable: bool,
     output: str | None,
     **_: Any,
 ) -> None:
@@ -40,10 +48,17 @@ def to_ps(
     to be printed. Several FILEs are layers, the first at the bottom. Strokes are written in the
     order that makes the file small.
 
+    With --self the printer does the work: the small representation itself is written, and a program that draws it with
+    fresh strokes for the size at which it is placed and the device's resolution. For print shops, and for
+    whatever converts PostScript to something else first, write strokes.
+
     \b
     penink blast --texture crosshatch --width 4in photo.pgm | penink to-ps -o photo.eps
     penink to-ps --paper a4 --margin 15mm photo.strokes.jsonl | lpr
     """
+    if self_drawing:
+        write_self_drawing(files, output, "readable" if readable else "flate" if level == "3" else "lzw")
+        return
     from functools import partial
 
     from penink_cli.formats import postscript
@@ -58,3 +73,16 @@ def to_ps(
     page = lay_out(layers, paper, margin, landscape)
     with writing(output, binary=False) as out:
         postscript.write(out, layers, page, colours, compress, order=partial(ordered, improve=False))
+
+
+def write_self_drawing(files: tuple[str, ...], output: str | None, packing: str) -> None:
+    """The illustration in the one file given as an EPS that draws itself."""
+    from penink_cli.commands.inputs import read_illustration
+    from penink_cli.options import MAX_PIXELS
+    from penink_cli.selfdrawing import postscript as selfdrawing
+
+    if len(files) > 1:
+        raise click.UsageError("--self takes one illustration")
+    program = selfdrawing.write(read_illustration(files[0] if files else None, MAX_PIXELS), packing)
+    with writing(output) as out:
+        out.write(program)

@@ -1,0 +1,262 @@
+# cython: language_level=3, boundscheck=False, wraparound=False, cdivision=True
+"""The loops of the threshold rule: which runs of a screen's strokes a picture's tone lets through.
+
+The self-drawing renderers are this module in PostScript and JavaScript, step by step.
+"""
+
+import cython
+from cython.cimports.libc.math import ceil, floor, sin, sqrt
+
+COMPILED = cython.compiled
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+@cython.inline
+def _cell(x: cython.double, scale: cython.double, n: cython.int) -> cython.int:
+    i: cython.int = cython.cast(cython.int, floor(x * scale))
+    if i < 0:
+        return 0
+    return n - 1 if i >= n else i
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def _edge_between(
+    x0: cython.double, y0: cython.double, x1: cython.double, y1: cython.double,
+    ax: cython.double[::1], ay: cython.double[::1], bx: cython.double[::1], by: cython.double[::1],
+    first: cython.int[::1], items: cython.int[::1], columns: cython.int, rows: cython.int,
+    near: cython.double,
+) -> cython.double:  # fmt: skip
+    """Where an edge crosses the segment, 0 … 1 along it, the crossing nearest to `near`; else -1. Sample units."""
+    best: cython.double = 9.0
+    answer: cython.double = -1.0
+    i0: cython.int = cython.cast(cython.int, floor(min(x0, x1))) + 1
+    i1: cython.int = cython.cast(cython.int, floor(max(x0, x1))) + 1
+    j0: cython.int = cython.cast(cython.int, floor(min(y0, y1))) + 1
+    j1: cython.int = cython.cast(cython.int, floor(max(y0, y1))) + 1
+    i: cython.int
+    j: cython.int
+    k: cython.int
+    for j in range(max(j0, 0), min(j1, rows - 1) + 1):
+        for i in range(max(i0, 0), min(i1, columns - 1) + 1):
+            for k in range(first[j * columns + i], first[j * columns + i + 1]):
+                e = items[k]
+                p = (bx[e] - ax[e]) * (y0 - ay[e]) - (by[e] - ay[e]) * (x0 - ax[e])
+                q = (bx[e] - ax[e]) * (y1 - ay[e]) - (by[e] - ay[e]) * (x1 - ax[e])
+                if (p > 0) == (q > 0):
+                    continue
+                a = (x1 - x0) * (ay[e] - y0) - (y1 - y0) * (ax[e] - x0)
+                b = (x1 - x0) * (by[e] - y0) - (y1 - y0) * (bx[e] - x0)
+                if (a > 0) == (b > 0):
+                    continue
+                t = p / (p - q)
+                if abs(t - near) < best:
+                    best = abs(t - near)
+                    answer = t
+    return answer
+
+
+@cython.ccall
+def runs(
+    tone: cython.uchar[:, ::1], width: cython.double, height: cython.double,
+    control: cython.double[:, :, ::1], enters: cython.double[::1], line: cython.int[::1],
+    way: cython.uchar[:, ::1], level: cython.uchar[::1],
+    cosine: cython.double, sine: cython.double, tile_u: cython.double, tile_v: cython.double,
+    copies: cython.int[:, ::1], columns: cython.int, rows: cython.int,
+    ax: cython.double[::1], ay: cython.double[::1], bx: cython.double[::1], by: cython.double[::1],
+    first: cython.int[::1], items: cython.int[::1],
+    pen: cython.double, whole: cython.bint, gap: cython.int, short: cython.double, deep: cython.double,
+    block: cython.double, ink: cython.double[:, ::1],
+    points: cython.double[:, ::1], ends: cython.longlong[::1], size: cython.longlong[::1],
+) -> cython.bint:  # fmt: skip
+    """Append the runs of one screen as polylines; False where the room given does not suffice.
+
+    width, height: of the picture in points; tone (m, n) fills it.
+    control: (s, 4, 2) in the screen's u, v; enters: (s,) in 255ths; line: (s,) the line it is part of, -1 for none.
+    way: (64, lines) how lines give way, 128 for not at all, in 24ths of a point; level: (256,) row of it for a tone.
+    copies: (c, 2) the tiles.
+    ax … items: edges in sample units and the squares (columns × rows) they are in.
+    pen: effective width. Lengths drawn are added to ink, blocks of `block` points square.
+    points, ends: size[0] points of size[1] runs, each up to its end; size is brought up to date.
+    """
+    n: cython.int = tone.shape[1]
+    m: cython.int = tone.shape[0]
+    sx: cython.double = n / width
+    sy: cython.double = m / height
+    gx: cython.double = (columns - 1) / width  # page to sample units, and half a sample
+    gy: cython.double = (rows - 1) / height
+    d = cython.declare(cython.double[4096])
+    px = cython.declare(cython.double[4096])
+    py = cython.declare(cython.double[4096])
+    s: cython.int
+    c: cython.int
+    i: cython.int
+    k: cython.int
+    start: cython.int
+    last: cython.int
+    got: cython.int
+    for s in range(control.shape[0]):
+        # coefficients of the cubic in u, v
+        u0 = control[s, 0, 0]
+        v0 = control[s, 0, 1]
+        u1 = 3 * (control[s, 1, 0] - u0)
+        v1 = 3 * (control[s, 1, 1] - v0)
+        u2 = 3 * (control[s, 2, 0] - 2 * control[s, 1, 0] + u0)
+        v2 = 3 * (control[s, 2, 1] - 2 * control[s, 1, 1] + v0)
+        u3 = control[s, 3, 0] - u0 - u1 - u2
+        v3 = control[s, 3, 1] - v0 - v1 - v2
+        length = sqrt((control[s, 3, 0] - u0) ** 2 + (control[s, 3, 1] - v0) ** 2)
+        if line[s] >= 0:  # the device has only its extent along the line
+            length = control[s, 3, 0] - u0
+        k = cython.cast(cython.int, ceil(length / 1.5))
+        k = min(max(k, 1), 4094)
+        step = length / k
+        limit = enters[s]
+        for c in range(copies.shape[0]):
+            du = u0 + copies[c, 0] * tile_u
+            dv = v0 + copies[c, 1] * tile_v
+            # the middle tells whether the stroke can reach the picture
+            mx = (du + u1 / 2 + u2 / 4 + u3 / 8) * cosine - (dv + v1 / 2 + v2 / 4 + v3 / 8) * sine
+            my = (du + u1 / 2 + u2 / 4 + u3 / 8) * sine + (dv + v1 / 2 + v2 / 4 + v3 / 8) * cosine
+            reach = length / 2 + 4
+            if mx < -reach or my < -reach or mx > width + reach or my > height + reach:
+                continue
+            total = 0.0
+            aside = 0.0
+            for i in range(k + 1):
+                t = cython.cast(cython.double, i) / k
+                u = du + t * (u1 + t * (u2 + t * u3))
+                v = dv + t * (v1 + t * (v2 + t * v3)) + aside
+                if line[s] >= 0:
+                    v += 0.3 * sin(0.09 * u + 0.03 * v) + 0.2 * sin(0.21 * u - 0.05 * v)
+                x = u * cosine - v * sine
+                y = u * sine + v * cosine
+                px[i] = x
+                py[i] = y
+                got = tone[_cell(y, sy, m), _cell(x, sx, n)]
+                d[i] = got - limit
+                total += d[i]
+                if line[s] >= 0:
+                    aim = (cython.cast(cython.int, way[level[got], line[s]]) - 128) / 24.0
+                    if i == 0:
+                        aside = aim
+                        px[0] -= aside * sine
+                        py[0] += aside * cosine
+                    elif d[i] > 0:
+                        aside += 0.2 * (aim - aside)
+            if size[0] + 2 * k + 8 > points.shape[0] or size[1] + k > ends.shape[0]:
+                return False
+            if whole:
+                if total > 0:
+                    _polyline(0, k, k, px, py, points, ends, size)
+                    _count(0, k, (length + 0.785 * pen) / (k + 1), width, height, block, px, py, ink)
+                continue
+            start = -1
+            last = -1
+            peak = 0.0
+            for i in range(k + 2):
+                if i <= k and d[i] > 0:
+                    if start < 0:
+                        start = i
+                        peak = 0.0
+                    last = i
+                    peak = max(peak, d[i])
+                elif start >= 0 and (i > k or i - last > gap or d[i] < -deep):
+                    if last - start >= short or peak > deep or last - start == k:
+                        ta = cython.cast(cython.double, start)
+                        tb = cython.cast(cython.double, last)
+                        if start > 0:
+                            ta = _end(
+                                start, -1, k, step, d, px, py, gx, gy, ax, ay, bx, by, first, items, columns, rows, pen
+                            )
+                        if last < k:
+                            tb = _end(
+                                last, 1, k, step, d, px, py, gx, gy, ax, ay, bx, by, first, items, columns, rows, pen
+                            )
+                        if tb > ta:
+                            _polyline(ta, tb, k, px, py, points, ends, size)
+                            each = step * (tb - ta) / (last - start + 1)
+                            _count(start, last, each, width, height, block, px, py, ink)
+                    start = -1
+    return True
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def _count(
+    start: cython.int, last: cython.int, each: cython.double, width: cython.double, height: cython.double,
+    block: cython.double, px: cython.p_double, py: cython.p_double, ink: cython.double[:, ::1],
+) -> cython.void:  # fmt: skip
+    """Add a run's length to the blocks it passes."""
+    j: cython.int
+    for j in range(start, last + 1):
+        if 0 <= px[j] < width and 0 <= py[j] < height:
+            ink[cython.cast(cython.int, py[j] / block), cython.cast(cython.int, px[j] / block)] += each
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def _polyline(
+    ta: cython.double, tb: cython.double, k: cython.int, px: cython.p_double, py: cython.p_double,
+    points: cython.double[:, ::1], ends: cython.longlong[::1], size: cython.longlong[::1],
+) -> cython.void:  # fmt: skip
+    """Append the part of the samples from ta to tb: both ends and every third sample between."""
+    at: cython.longlong = size[0]
+    i: cython.int = 3 * (cython.cast(cython.int, floor(ta / 3)) + 1)
+    _point(ta, k, px, py, points, at)
+    at += 1
+    while i < tb:
+        if i - ta > 1 and tb - i > 1:
+            _point(i, k, px, py, points, at)
+            at += 1
+        i += 3
+    _point(tb, k, px, py, points, at)
+    size[0] = at + 1
+    ends[size[1]] = at + 1
+    size[1] += 1
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def _point(
+    t: cython.double, k: cython.int, px: cython.p_double, py: cython.p_double,
+    points: cython.double[:, ::1], at: cython.longlong,
+) -> cython.void:  # fmt: skip
+    i: cython.int = min(max(cython.cast(cython.int, floor(t)), 0), k - 1)
+    f = t - i
+    points[at, 0] = px[i] + f * (px[i + 1] - px[i])
+    points[at, 1] = py[i] + f * (py[i + 1] - py[i])
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def _end(
+    at: cython.int, way: cython.int, k: cython.int, step: cython.double,
+    d: cython.p_double, px: cython.p_double, py: cython.p_double,
+    gx: cython.double, gy: cython.double,
+    ax: cython.double[::1], ay: cython.double[::1], bx: cython.double[::1], by: cython.double[::1],
+    first: cython.int[::1], items: cython.int[::1], columns: cython.int, rows: cython.int,
+    pen: cython.double,
+) -> cython.double:  # fmt: skip
+    """Where a run really ends whose last sample is `at` and whose next one, `at + way`, is off: in samples.
+
+    Exactly at an edge less half a pen where one is near, else where the tone reaches the threshold.
+    """
+    off: cython.int = at + way
+    if d[at] - d[off] > 10:
+        i: cython.int = max(0, min(k, at - way))
+        j: cython.int = max(0, min(k, off + way))
+        t = _edge_between(
+            px[i] * gx - 0.5, py[i] * gy - 0.5, px[j] * gx - 0.5, py[j] * gy - 0.5,
+            ax, ay, bx, by, first, items, columns, rows, cython.cast(cython.double, 0.5),
+        )  # fmt: skip
+        if t >= 0:
+            return i + (j - i) * t - way * (pen / 2 / step)
+    return at + way * (d[at] / (d[at] - d[off])) - way * (0.4 * pen / step)

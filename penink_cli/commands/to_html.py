@@ -1,0 +1,38 @@
+"""``penink to-html``."""
+
+from __future__ import annotations
+
+from pathlib import PurePath
+from typing import Any
+
+import click
+
+from penink_cli.commands.inputs import read_illustration
+from penink_cli.options import filter_options
+from penink_cli.streams import writing
+
+
+@click.command(name="to-html")
+@filter_options
+@click.option("--title", help="Of the page.  [default: the file's name]")
+@click.option("--readable", is_flag=True, help="Keep the program's comments and layout.")
+def to_html(
+    file: str | None, output: str | None, max_pixels: int, title: str | None, readable: bool, **_: Any
+) -> None:
+    """Write an illustration as one web page that draws itself.
+
+    FILE is an illustration, packed (*.penink) or loose. The page holds its small representation and a program that
+    draws it with fresh strokes at every magnification; it needs no server and fetches nothing. The wheel, two
+    fingers or + and - zoom.
+
+    \b
+    penink to-html keys.penink -o keys.html
+    """
+    from penink_cli.selfdrawing import html
+
+    illustration = read_illustration(file, max_pixels)
+    if title is None:
+        title = PurePath(file).name.split(".")[0] if file not in (None, "-") and file else "Illustration"
+    page = html.write(illustration, title, readable)
+    with writing(output) as out:
+        out.write(page)

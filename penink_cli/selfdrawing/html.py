@@ -1,0 +1,79 @@
+"""An illustration as one web page that draws itself: samples, edges, texture and a renderer in JavaScript.
+
+Nothing is fetched; it works from a local file with the network off. The program is `renderer/*.js`.
+"""
+
+from __future__ import annotations
+
+import base64
+import html
+import json
+from typing import Any
+
+from penink_cli.model import Illustration
+from penink_cli.selfdrawing import packer
+from penink_cli.selfdrawing.data import LayerData, layers, tile_bytes
+
+SOURCES = ("unpack.js", "reconstruct.js", "drawing.js", "data.js", "page.js")
+
+
+def write(illustration: Illustration, title: str, readable: bool = False) -> bytes:
+    """The page. readable: with the program's comments, not packed."""
+    parts = layers(illustration)
+    data = b"".join(
+        part.samples + part.edges + b"".join(tile_bytes(s) for s in part.table.screens if s.layer is None)
+        for part in parts
+    )
+    program = "\n".join(packer.source(name) for name in SOURCES)
+    call = f"start({_number(illustration.width)},{_number(illustration.height)},{_layers(parts)},"
+    if readable:
+        script = f"{program}\nunpack({_quoted(data)}).then(bytes => {call}bytes));"
+    else:
+        code = packer.strip_javascript(program).encode("utf-8")
+        script = (
+            packer.strip_javascript(packer.source("unpack.js"))
+            + f"\nunpack({_quoted(code + data)}).then(bytes=>{{\nconst script=document.createElement(\"script\");\n"
+            f"script.textContent=new TextDecoder().decode(bytes.subarray(0,{len(code)}));\n"
+            f"document.body.append(script);\n"
+            f"{call}bytes.subarray({len(code)}));\n}});"
+        )
+    page = packer.source("page.html").replace("TITLE", html.escape(title)).replace("PROGRAM", script)
+    return page.encode("utf-8")
+
+
+def _quoted(data: bytes) -> str:
+    return '"' + base64.b64encode(packer.deflate(data)).decode("ascii") + '"'
+
+
+def _layers(parts: list[LayerData]) -> str:
+    return json.dumps([_description(part) for part in parts], separators=(",", ":"))
+
+
+def _description(layer: LayerData) -> dict[str, Any]:
+    return {
+        "w": layer.width,
+        "h": layer.height,
+        "levels": layer.levels,
+        "chains": layer.chains,
+        "outlined": layer.outlined,
+        "outlinePen": layer.outline_pt,
+        "gamma": layer.gamma,
+        "pen": round(layer.table.pen_pt, 4),
+        "magnification": round(layer.table.magnification, 4),
+        "screens": [
+            [s.layer.angle, s.layer.low, s.layer.high]
+            if s.layer is not None
+            else {
+                "tile": [s.width, s.height],
+                "lengths": [round(v, 4) for v in s.lengths.tolist()],
+                "covers": [round(v, 4) for v in s.covers.tolist()],
+                "whole": layer.table.whole,
+                "strokes": len(s.enters),
+            }
+            for s in layer.table.screens
+        ],
+    }
+
+
+def _number(value: float) -> str:
+    return f"{value:.4f}".rstrip("0").rstrip(".")

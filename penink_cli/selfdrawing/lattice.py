@@ -1,0 +1,42 @@
+"""Edges on the lattice of odd 32nds of a sample, where no vertex meets a sample, a square's border or the frame.
+
+A device computes with 32-bit reals. On this lattice its coordinates and everything it asks
+about samples and edges are exact, and the ties of the reconstruction (queries on an edge) are
+rare. Vertices on the frame's border go to the lattice line just outside it, so that no path
+slips through between an edge and the border.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from penink_cli.arrangement.quantisation import quantise
+from penink_cli.model import EdgeList, Floats, Ints
+
+PARTS = 16  # lattice lines a sample
+
+
+def on_lattice(edges: EdgeList, w: int, h: int) -> tuple[Ints, Ints, Floats | None]:
+    """Edges over w × h samples as vertices (n, 2) in whole numbers, edges (m, 2) and their strengths.
+
+    Vertex i lies at (i + ½) / 16 samples from the frame's corner: 0 … 16w - 1 within the frame,
+    -1 and 16w beyond its border. The result is an arrangement again: vertices that fell together are
+    one, edges that came to cross are split or, in a tangle, left out.
+    """
+    scale = np.array([w, h]) * PARTS
+    at = edges.scaled(float(scale[0]), float(scale[1]))
+    near = np.minimum(np.floor(at), scale)
+    near = np.where(at <= 0, -1, near)
+    grid = EdgeList(int(scale[0]) + 2, int(scale[1]) + 2, near + 1, edges.edges, edges.strength)
+    moved = quantise(grid, grid.width, grid.height)
+    vertices = np.rint(moved.vertices).astype(np.int64) - 1
+    ends = moved.edges
+    # nothing of an edge along the border, or beyond it, is within the frame
+    out = ((vertices < 0) | (vertices >= scale))[ends]
+    keep = ~(out[:, 0] & out[:, 1]).any(axis=1)
+    return vertices, ends[keep], None if moved.strength is None else moved.strength[keep]
+
+
+def in_samples(vertices: Ints) -> Floats:
+    """The lattice's vertices in sample units, the samples at whole numbers."""
+    return (vertices + 0.5) / PARTS - 0.5

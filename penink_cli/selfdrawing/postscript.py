@@ -1,0 +1,95 @@
+"""An illustration as one EPS that draws itself: samples, edges, texture and a renderer in PostScript.
+
+It reads the current matrix and the device's resolution and draws strokes of constant width and density
+for the size it is given. The program is `renderer/*.ps`. It keeps to a dictionary of its own between save and
+restore, leaves the stacks as found and uses no operator that changes the device.
+"""
+
+from __future__ import annotations
+
+import math
+
+from penink_cli.model import Illustration
+from penink_cli.selfdrawing import packer
+from penink_cli.selfdrawing.data import LayerData, layers, tile_bytes
+from penink_cli.textures.threshold import Screen
+
+SOURCES = ("reconstruct.ps", "texture.ps", "drawing.ps", "outline.ps", "data.ps", "page.ps")
+PACKINGS = ("flate", "lzw", "readable")
+
+
+def write(illustration: Illustration, packing: str = "flate") -> bytes:
+    """The EPS. packing: flate (Level 3), lzw (Level 2), or readable."""
+    parts = layers(illustration)
+    width, height = illustration.width, illustration.height
+    head = (
+        "%!PS-Adobe-3.0 EPSF-3.0\n"
+        f"%%BoundingBox: 0 0 {math.ceil(width)} {math.ceil(height)}\n"
+        f"%%HiResBoundingBox: 0 0 {_number(width)} {_number(height)}\n"
+        "%%Creator: penink\n"
+        f"%%LanguageLevel: {3 if packing == 'flate' else 2}\n"
+        "%%Pages: 1\n%%DocumentData: Clean7Bit\n%%EndComments\n%%Page: 1 1\n"
+        "save 300 dict begin\n"
+    )
+    tail = "end restore\nshowpage\n%%Trailer\n%%EOF\n"
+    program = "\n".join(packer.source(name) for name in SOURCES)
+    page = f"{_number(width)} {_number(height)} Page\n"
+    if packing == "readable":
+        body = program + page
+        for layer in parts:
+            data = _bytes(layer)
+            lines = [data[i : i + 40].hex() for i in range(0, len(data), 40)]
+            read = _read(layer)
+            source = "/Source currentfile /ASCIIHexDecode filter def"
+            body += f"save\n/Data {{ {source} {read} Source flushfile }} bind def\nData\n"
+            body += "\n".join(lines) + "\n>\n" + _draw(layer) + "restore\n"
+        return (head + body + tail).encode("ascii")
+    packed = (packer.strip_postscript(program) + "\n" + page).encode("ascii")
+    for layer in parts:
+        packed += f"save\n/Source currentfile def/Data{{{_read(layer)}}}bind def Data\n".encode("ascii")
+        packed += _bytes(layer) + ("\n" + _draw(layer) + "restore\n").encode("ascii")
+    data = packer.deflate(packed) if packing == "flate" else packer.lzw(packed)
+    name = "FlateDecode" if packing == "flate" else "LZWDecode"
+    body = f"{{ currentfile /ASCII85Decode filter dup /{name} filter cvx exec flushfile }} exec\n"
+    return (head + body).encode("ascii") + packer.ascii85(data) + tail.encode("ascii")
+
+
+def _bytes(layer: LayerData) -> bytes:
+    tiles = [tile_bytes(s) for s in layer.table.screens if s.layer is None]
+    return layer.samples + layer.edges + b"".join(tiles)
+
+
+def _read(layer: LayerData) -> str:
+    return (
+        f"{layer.width} {layer.height} {layer.levels} GetSamples "
+        f"{layer.chains} {layer.outlined} {layer.vertices} {layer.ends} GetEdges "
+    ) + " ".join(_tile(i, s, layer.table.whole) for i, s in enumerate(layer.table.screens) if s.layer is None)
+
+
+def _draw(layer: LayerData) -> str:
+    table = layer.table
+    screens = " ".join(
+        _screen(i, s) if s.layer is not None else f"Tile{i}" for i, s in enumerate(table.screens)
+    )
+    return (
+        f"/OutlinePen {_number(layer.outline_pt)} def /Gamma {_number(layer.gamma)} def\n"
+        f"{_number(table.pen_pt)} {_number(table.magnification)} [ {screens} ] Layer\n"
+    )
+
+
+def _screen(number: int, screen: Screen) -> str:
+    assert screen.layer is not None
+    layer = screen.layer
+    return f"{number} {_number(layer.angle)} {_number(layer.low)} {_number(layer.high)} Lines"
+
+
+def _tile(number: int, screen: Screen, whole: bool) -> str:
+    lengths, covers = (" ".join(map(_number, v.tolist())) for v in (screen.lengths, screen.covers))
+    return (
+        f"/Tile{number} {_number(screen.width)} {_number(screen.height)} [ {lengths} ] [ {covers} ] "
+        f"{'true' if whole else 'false'} {len(screen.enters)} GetTile def"
+    )
+
+
+def _number(value: float) -> str:
+    return f"{value:.4f}".rstrip("0").rstrip(".")

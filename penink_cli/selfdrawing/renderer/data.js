@@ -1,0 +1,71 @@
+// data.js - the illustration's data, as penink_cli/selfdrawing/data.py writes them.
+
+class Reader {
+  constructor(bytes) { this.bytes = bytes; this.at = 0; }
+  byte() { return this.bytes[this.at++]; }
+  word() { return this.byte() * 256 + this.byte(); }
+
+  // Ink levels, each coded modulo levels as its difference from the median of left, upper and left + upper - corner.
+  samples(w, h, levels) {
+    const level = new Uint8Array(w * h);
+    for (let j = 0; j < h; j++) for (let i = 0; i < w; i++) {
+      const k = j * w + i, left = i ? level[k - 1] : j ? level[k - w] : 0, up = j ? level[k - w] : left;
+      const corner = i && j ? level[k - w - 1] : j ? up : left;
+      const median = Math.max(Math.min(left, up), Math.min(Math.max(left, up), left + up - corner));
+      level[k] = (median + this.byte()) % levels;
+    }
+    return level.map(v => Math.floor(v * 255 / (levels - 1) + 0.5));
+  }
+
+  // Chains of edges: number of edges, first vertex, steps, in 16ths of a sample.
+  edges(chains, outlined) {
+    const numbers = new Map(), xs = [], ys = [], ends = [], outlines = [];
+    const vertex = (x, y) => {
+      const key = x * 8192 + y;
+      if (!numbers.has(key)) {
+        numbers.set(key, xs.length);
+        xs.push((x - 0.5) / 16 - 0.5);
+        ys.push((y - 0.5) / 16 - 0.5);
+      }
+      return numbers.get(key);
+    };
+    for (let c = 0; c < chains; c++) {
+      const count = this.word();
+      let x = this.word(), y = this.word();
+      const chain = [vertex(x, y)];
+      for (let e = 0; e < count; e++) {
+        const dx = this.byte() - 128, dy = this.byte() - 128;
+        if (dx || dy) { x += dx; y += dy; } else { x = this.word(); y = this.word(); }
+        chain.push(vertex(x, y));
+        ends.push(chain.slice(-2));
+      }
+      if (c < outlined) outlines.push(chain.map(v => [xs[v], ys[v]]));
+    }
+    return {xs, ys, ends, outlines};
+  }
+
+  // Strokes that are not lines: threshold, first point, three steps from there, in quarters of a point.
+  tile({tile, lengths, covers, whole, strokes: count}) {
+    const strokes = [];
+    for (let k = 0; k < count; k++) {
+      const limit = this.byte(), u0 = this.word() / 4, v0 = this.word() / 4;
+      const [x1, y1, x2, y2, x3, y3] = Array.from({length: 6}, () => (this.byte() - 128) / 4);
+      const axis = (first, a, b, c) => [first, 3 * a, 3 * (b - 2 * a), c - 3 * a - 3 * (b - 2 * a)];
+      strokes.push({long: Math.hypot(x3, y3), u: axis(u0, x1, x2, x3), v: axis(v0, y1, y2, y3), limit, line: -1});
+    }
+    return {angle: 0, strokes, tile, lengths, covers, whole};
+  }
+}
+
+// Layers from the description in the page and its bytes.
+function readLayers(description, bytes) {
+  const reader = new Reader(bytes);
+  return description.map(d => {
+    const ink = reader.samples(d.w, d.h, d.levels), {xs, ys, ends, outlines} = reader.edges(d.chains, d.outlined);
+    const screens = d.screens.map((s, i) => Array.isArray(s) ? lines(i, ...s) : reader.tile(s));
+    const curve = d.gamma === 1 ? null :
+      Uint8Array.from({length: 256}, (_, t) => Math.floor(255 * (1 - (1 - t / 255) ** d.gamma) + 0.5));
+    return {picture: new Picture(d.w, d.h, ink, xs, ys, ends), screens, outlines, curve,
+      pen: d.pen, magnification: d.magnification, outlinePen: d.outlinePen / d.magnification};
+  });
+}

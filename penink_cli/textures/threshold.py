@@ -1,0 +1,234 @@
+"""The threshold table of a texture: for each of its strokes the tone at which it enters.
+
+A renderer without a coverage buffer – a printer, a web page, `blast --rule threshold` – needs nothing
+but this: *each stroke is drawn wherever the tone exceeds its threshold*. All of them share one table,
+so they draw the same strokes.
+
+A table consists of screens, a word from halftoning: each has an angle, a tile of its own in the
+directions along (u) and across (v) that angle, and strokes with thresholds. Hatching is a screen of
+*lines* for each layer. A line is as long as the tile and has one threshold for all of it, so light tones
+are long lines and not scattered dashes; it is laid as strokes of a hand's length that bow and tilt a
+little. Lines enter in the order of the reversed bits of their number, so that every prefix is spread
+evenly. Any other texture is one screen at angle 0 whose strokes are those of its tile.
+
+Thresholds are meant for one effective width of pen (what the device paints, its gain included), `PEN_PT`:
+a pen or a device that cannot paint so fine gets the pen and the tile magnified together.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from penink_cli.blasting import tile as blasting
+from penink_cli.model import Floats, HatchLayer, Ints, Texture
+
+Bytes = npt.NDArray[np.uint8]
+Integers = npt.NDArray[np.int32]
+
+#: The effective width of all strokes of a table, points.
+PEN_PT = 0.54
+#: Lines of a hatching screen, one above the other; their number is a power of two.
+LINES = 256
+#: Size of a hatching screen's tile, points.
+ALONG_PT, ACROSS_PT = 288.0, 100.0
+#: Coverage of a screen with parts of its lines, piecewise linear (measured): half of them do not touch one another.
+PARTS, COVERS = (0.0, 0.5, 0.63, 0.75, 1.0), (0.0, 0.6912, 0.845, 0.943, 0.995)
+
+
+@dataclass(frozen=True, eq=False)
+class Screen:
+    """Strokes with thresholds, on a tile that repeats.
+
+    angle: of the u axis in degrees, from x towards y (clockwise on paper).
+    width, height: of the tile, points.
+    points, first: control points (p, 2) in points and where each stroke begins, as in `model.Strokes`.
+    enters: (s,) tone above which each stroke is drawn.
+    lengths, covers: (k,) ascending: the coverage of the screen by itself where strokes of that length, points per
+        square point, are drawn, piecewise linear.
+    line: (s,) the number of the line that a stroke is part of, -1 for none.
+    level: (256,) of lines only: the row of `way` for a tone in 255ths.
+    layer: of a screen of lines, what a renderer makes it from.
+    """
+
+    angle: float
+    width: float
+    height: float
+    points: Floats
+    first: Ints
+    enters: Floats
+    lengths: Floats
+    covers: Floats
+    line: Integers
+    level: Bytes
+    layer: HatchLayer | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class ThresholdTable:
+    """The screens of a texture, in order of drawing.
+
+    way: (64, lines) as `give_way` makes it.
+    pen_pt: effective width of the strokes.
+    magnification: of pen and tile, for those who want another pen than the texture's own.
+    whole: strokes are drawn whole or not at all.
+    """
+
+    name: str
+    screens: tuple[Screen, ...]
+    way: Bytes
+    pen_pt: float = PEN_PT
+    magnification: float = 1.0
+    whole: bool = False
+
+
+def reversed_bits(k: int, bits: int = 8) -> int:
+    """The bits of k from right to left.
+
+    >>> [reversed_bits(k, 2) for k in range(4)]
+    [0, 2, 1, 3]
+    """
+    return int(f"{k:0{bits}b}"[::-1], 2)
+
+
+def random_bytes(seed: int) -> Iterator[int]:
+    """Numbers 0 … 255 from a congruence that 32-bit signed integers can hold, so that any device makes the same."""
+    state = seed
+    while True:
+        state = (state * 25173 + 13849) % 65536
+        yield state >> 8
+
+
+def lines(layer: HatchLayer, number: int) -> Screen:
+    """The screen of one hatching layer, the `number`-th of its texture.
+
+    Line k lies at v = 100/256 (k + ½) pt. It is cut into strokes 42 to 73 pt long, each of which starts and ends
+    up to 0.1 pt off the line and bows by up to 0.1 pt.
+    """
+    byte = random_bytes(4711 + 97 * number)
+    span = (layer.high - layer.low) / (1.0 - layer.low)  # coverage of this screen alone when it ends
+    points, enters, line = [], [], []
+    for k in range(LINES):
+        v = (k + 0.5) * ACROSS_PT / LINES
+        cover = float(np.interp((reversed_bits(k) + 0.5) / LINES, PARTS, COVERS))
+        u = next(byte) * ALONG_PT / 256
+        left = ALONG_PT
+        while left > 0:
+            length = 42.0 + next(byte) / 8
+            if left < length + 30:
+                length = left
+            rise, fall, bow = (next(byte) / 128 - 1 for _ in range(3))
+            if cover < span:
+                v0, v1, push = v + 0.1 * rise, v + 0.1 * fall, 0.15 * bow
+                points.append(
+                    [
+                        (u, v0),
+                        (u + length / 3, v0 + (v1 - v0) / 3 + push),
+                        (u + length * 2 / 3, v0 + (v1 - v0) * 2 / 3 + push),
+                        (u + length, v1),
+                    ]
+                )
+                enters.append(layer.low + (1 - layer.low) * cover)
+                line.append(k)
+            u += length
+            left -= length
+    n = len(points)
+    return Screen(
+        layer.angle, ALONG_PT, ACROSS_PT, np.array(points).reshape(-1, 2), np.arange(n + 1) * 4, np.array(enters),
+        np.array(PARTS) * LINES / ACROSS_PT, np.array(COVERS),
+        np.array(line, np.int32), levels(layer), layer,
+    )  # fmt: skip
+
+
+#: Rows of the table of how lines give way.
+LEVELS = 64
+
+
+def levels(layer: HatchLayer) -> Bytes:
+    """(256,) for each tone in 255ths the row of `give_way`: in 64ths, what part of the screen's lines it lets in."""
+    cover = np.clip((np.arange(256) / 255 - layer.low) / (1 - layer.low), 0, 1)
+    return np.minimum(np.floor(np.interp(cover, COVERS, PARTS) * LEVELS), LEVELS - 1).astype(np.uint8)
+
+
+def give_way() -> Bytes:
+    """(64, lines) how far a line moves aside for those that have entered beside it, in 24ths of a point, 128 for not.
+
+    In row r the first 4r + 2 lines are there. Three times each moves half way to the middle between its neighbours.
+    """
+    out = np.full((LEVELS, LINES), 128, np.uint8)
+    rank = np.array([reversed_bits(k) for k in range(LINES)])
+    for r in range(LEVELS):
+        there = np.flatnonzero(rank < 4 * r + 2)
+        home = (there + 0.5) * ACROSS_PT / LINES
+        at = home
+        for _ in range(3):
+            before, after = np.roll(at, 1), np.roll(at, -1)
+            before[0] -= ACROSS_PT
+            after[-1] += ACROSS_PT
+            at = at / 2 + (before + after) / 4
+        out[r, there] = np.clip(np.floor(128.5 + 24 * (at - home)), 0, 255)
+    return out
+
+
+#: Steps in which the control points of strokes that are not lines are kept, points, and how far one may lead.
+GRID_PT, FARTHEST = 0.25, 127
+#: Strokes that enter later than this add more bytes than ink.
+LATEST = 0.93
+#: What a device of 600 dpi adds to a pen, roughly, as `PEN_PT` is meant for one of 0.4 pt.
+WIDENED_PT = 0.14
+
+
+def strokes(texture: Texture) -> Screen:
+    """The screen of any other texture: the segments of its tile's strokes, on a grid of 1/4 pt."""
+    tile = texture.strokes
+    pen = float(np.median(tile.widths)) + WIDENED_PT
+    enters = blasting.thresholds(texture, WIDENED_PT / 1.27)
+    points, limits, equal = [], [], []
+    for i in np.flatnonzero(enters <= LATEST).tolist():
+        stroke = tile[i]
+        segments = [np.repeat(stroke, 4, axis=0)] if len(stroke) == 1 else [
+            half for k in range(0, len(stroke) - 1, 3) for half in _short(stroke[k : k + 4])
+        ]  # fmt: skip
+        for segment in segments:
+            segment = segment - np.floor(segment[0] / (tile.width, tile.height)) * (tile.width, tile.height)
+            first = np.floor(segment[0] / GRID_PT + 0.5)
+            points.append((first + np.floor((segment - segment[0]) / GRID_PT + 0.5)) * GRID_PT)
+            limits.append(float(np.floor(enters[i] * 255)) / 255)
+            # whole strokes count with their round ends, runs without
+            equal.append(float(np.hypot(*(points[-1][3] - points[-1][0]))) + (0.785 * pen if texture.whole else 0.0))
+    lengths = np.cumsum(equal) / (tile.width * tile.height)
+    knots = np.unique(np.linspace(0, len(limits) - 1, 12).astype(int))
+    n = len(points)
+    return Screen(
+        0.0, tile.width, tile.height, np.array(points).reshape(-1, 2), np.arange(n + 1) * 4, np.array(limits),
+        np.append(0, lengths[knots]), np.append(0, np.array(limits)[knots]),
+        np.full(n, -1, np.int32), np.zeros(256, np.uint8),
+    )  # fmt: skip
+
+
+def _short(segment: Floats) -> list[Floats]:
+    """The cubic in halves, and theirs, until no control point lies too far from the first."""
+    if np.abs(segment - segment[0]).max() < (FARTHEST - 1) * GRID_PT:
+        return [segment]
+    a, b, c, d = segment
+    ab, bc, cd = (a + b) / 2, (b + c) / 2, (c + d) / 2
+    abc, bcd = (ab + bc) / 2, (bc + cd) / 2
+    middle = (abc + bcd) / 2
+    return _short(np.array([a, ab, abc, middle])) + _short(np.array([middle, bcd, cd, d]))
+
+
+def table(texture: Texture, pen_pt: float | None = None) -> ThresholdTable:
+    """The threshold table of any texture; pen_pt: one pen for all its strokes."""
+    pen = pen_pt or (float(np.median(texture.strokes.widths)) if len(texture.strokes) else 0.4)
+    if not texture.layers:
+        own = float(np.median(texture.strokes.widths)) + WIDENED_PT
+        magnification = (pen + WIDENED_PT) / own
+        return ThresholdTable(texture.name, (strokes(texture),), give_way(), own, magnification, texture.whole)
+    screens, low = [], 0.0
+    for number, layer in enumerate(texture.layers):
+        screens.append(lines(replace(layer, low=low), number))
+        low = layer.high
+    return ThresholdTable(texture.name, tuple(screens), give_way(), PEN_PT, (pen + WIDENED_PT) / PEN_PT)

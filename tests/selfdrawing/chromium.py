@@ -1,0 +1,114 @@
+"""A headless Chromium, driven over a pair of pipes by the DevTools protocol."""
+
+from __future__ import annotations
+
+import base64
+import io
+import json
+import os
+import shutil
+import subprocess
+import tempfile
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from PIL import Image
+
+NAMES = ("chromium-headless-shell", "chromium", "chromium-browser")
+FLAGS = (
+    "--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update", "--disable-sync", "--remote-debugging-pipe", "--hide-scrollbars",
+    "--host-resolver-rules=MAP * ~NOTFOUND",
+)  # fmt: skip
+
+
+class Page:
+    """One page of a browser of its own; console holds what it wrote there, requests what it fetched."""
+
+    def __init__(self, path: Path, width: int = 1024, height: int = 1024):
+        name = next((n for n in NAMES if shutil.which(n)), None)
+        assert name, "no Chromium: apt-get install chromium-headless-shell"
+        self.profile = tempfile.mkdtemp(prefix="penink-chromium-")
+        in_read, in_write = os.pipe()
+        out_read, out_write = os.pipe()
+        # the browser reads its file 3 and writes its file 4
+        self.process = subprocess.Popen(
+            ["sh", "-c", f'exec 3<&{in_read} 4>&{out_write}; exec "$@"', "sh", name, *FLAGS,
+             f"--user-data-dir={self.profile}", f"--window-size={width},{height}", "about:blank"],
+            pass_fds=(in_read, out_write), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+        )  # fmt: skip
+        os.close(in_read)
+        os.close(out_write)
+        self.write, self.read = os.fdopen(in_write, "wb"), os.fdopen(out_read, "rb")
+        self.buffer, self.number = b"", 0
+        self.console: list[str] = []
+        self.requests: list[str] = []
+        targets = self.call("Target.getTargets")["targetInfos"]
+        target = next(t["targetId"] for t in targets if t["type"] == "page")
+        self.session = self.call("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
+        for domain in ("Page", "Runtime", "Log", "Network"):
+            self.call(f"{domain}.enable")
+        self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False)
+        self.call("Page.navigate", url=path.resolve().as_uri())
+        self.until("document.body && document.body.dataset.ready === 'yes'")
+
+    def call(self, method: str, **params: Any) -> Any:
+        self.number += 1
+        message = {"id": self.number, "method": method, "params": params}
+        if getattr(self, "session", None):
+            message["sessionId"] = self.session
+        self.write.write(json.dumps(message).encode() + b"\0")
+        self.write.flush()
+        while True:
+            answer = self._next()
+            if answer.get("id") == self.number:
+                assert "error" not in answer, answer["error"]
+                return answer["result"]
+
+    def _next(self) -> dict[str, Any]:
+        while b"\0" not in self.buffer:
+            more = self.read.read1(1 << 16)
+            assert more, "the browser has gone"
+            self.buffer += more
+        message, self.buffer = self.buffer.split(b"\0", 1)
+        event: dict[str, Any] = json.loads(message)
+        params = event.get("params", {})
+        match event.get("method"):
+            case "Runtime.consoleAPICalled":
+                self.console.append(str(params["args"]))
+            case "Runtime.exceptionThrown":
+                self.console.append(str(params["exceptionDetails"]))
+            case "Log.entryAdded":
+                self.console.append(params["entry"]["text"])
+            case "Network.requestWillBeSent":
+                self.requests.append(params["request"]["url"][:200])
+        return event
+
+    def evaluate(self, expression: str) -> Any:
+        result = self.call("Runtime.evaluate", expression=expression, awaitPromise=True, returnByValue=True)
+        assert "exceptionDetails" not in result, result["exceptionDetails"]
+        return result["result"].get("value")
+
+    def until(self, expression: str) -> None:
+        """Wait, in the page, for what the expression says."""
+        while not self.evaluate(f"new Promise(done => requestAnimationFrame(() => done(!!({expression}))))"):
+            pass
+
+    def screenshot(self) -> np.ndarray:
+        data = base64.b64decode(self.call("Page.captureScreenshot", format="png")["data"])
+        return np.asarray(Image.open(io.BytesIO(data)).convert("L"))
+
+    def close(self) -> None:
+        self.write.close()
+        self.read.close()
+        self.process.terminate()
+        self.process.wait()
+        shutil.rmtree(self.profile, ignore_errors=True)
+
+    def __enter__(self) -> Page:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
