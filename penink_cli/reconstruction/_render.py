@@ -1,7 +1,9 @@
 # cython: language_level=3, boundscheck=False, wraparound=False, cdivision=True
 """The reconstruction of whole rows of output: a separable pass everywhere, then the tiles near edges once more.
 
-In double, or for 8-bit output in float, which vectorises twice as wide; what pixels see is exact in both.
+In double, or for 8-bit output in float, which vectorises twice as wide; what pixels see is exact in both. Wider vectors
+are not worth a second build: with AVX2 500 edges at 128² → 1024² took 5 % less, the separable pass 18 %. Of the time of
+such a call the sums of weights take a quarter, attenuation an eighth, masks and classification of lines a third.
 """
 
 import cython
