@@ -13,6 +13,8 @@ from penink_cli.model import Floats
 
 Ints32 = npt.NDArray[np.int32]
 
+_STRETCH = 5  # points on each side of a corner that tell where it lies
+
 
 @dataclass(frozen=True, eq=False)
 class Chains:
@@ -99,6 +101,67 @@ def unbend(points: EdgePoints, chains: Chains, blur: float) -> Floats:
     size = np.hypot(*shift.T)[:, None]
     position[chains.order] += shift * np.minimum(1, 0.5 * blur / np.maximum(size, 1e-9))
     return position
+
+
+def sharpen(points: EdgePoints, chains: Chains, blur: float) -> tuple[Floats, Chains]:
+    """Give corners that blur has rounded their points back.
+
+    Where a chain turns sharply between two straight stretches, the stretches are prolonged to where
+    they cross; the points between, which blur has pulled inward, are left out.
+
+    Returns:
+        positions (n, 2) of all edge points, and the chains without the points left out.
+
+    """
+    position = points.position.copy()
+    skip = round(1.5 * blur) + 1
+    far = skip + _STRETCH
+    owner = chains.owner
+    first, length, ring = chains.first[:-1][owner], np.diff(chains.first)[owner], chains.ring[owner]
+    place = np.arange(len(chains.order)) - first
+    fits = (length > 2 * far) & (ring | ((place >= far) & (place < length - far)))
+    at = np.flatnonzero(fits)
+    p = position[chains.order]
+
+    def neighbour(step: int) -> npt.NDArray[np.intp]:
+        return first[at] + (place[at] + step) % length[at]
+
+    before, after = p[neighbour(-skip)], p[neighbour(skip)]
+    back, on = before - p[neighbour(-far)], p[neighbour(far)] - after
+    back /= np.maximum(1e-9, np.hypot(*back.T))[:, None]
+    on /= np.maximum(1e-9, np.hypot(*on.T))[:, None]
+    turn = np.arccos(np.clip((back * on).sum(axis=1), -1, 1))
+    middle = skip + _STRETCH // 2
+    way = np.sign(_cross(back, on))
+    bow_back = way * _cross(p[neighbour(-middle)] - before, back)
+    bow_on = way * _cross(p[neighbour(middle)] - after, on)
+    # What a circle that bends as the stretches do would turn in between.
+    steady = 4 * (bow_back + bow_on) / _STRETCH**2 * (2 * skip + _STRETCH)
+    corner, s, t = _crossing(before, back, after, -on)
+    shift = np.hypot(*(corner - p[at]).T)
+    inside = ((corner > 0) & (corner < points.shape[::-1])).all(axis=1)
+    good = (turn - np.maximum(0, steady) > 0.7) & (turn < 2.6) & inside
+    good &= np.maximum(np.abs(bow_back), np.abs(bow_on)) < 0.3
+    good &= (s > 0) & (t > 0) & (np.maximum(s, t) < 2 * skip) & (shift < 1.2 * blur)
+    uneven = np.abs(np.where(good, s, 0) - np.where(good, t, 0))
+
+    left_out = np.zeros(len(p), bool)
+    taken = np.zeros(len(p), bool)
+    # The middle of a corner is where both stretches are equally far from it.
+    for k in np.flatnonzero(good)[np.lexsort((at[good], uneven[good]))]:
+        span = first[at[k]] + (place[at[k]] + np.arange(-skip + 1, skip)) % length[at[k]]
+        if taken[span].any():
+            continue
+        taken[span] = left_out[span] = True
+        left_out[at[k]] = False
+        position[chains.order[at[k]]] = corner[k]
+    counts = np.add.reduceat(~left_out, chains.first[:-1]) if len(chains) else np.zeros(0, int)
+    kept = Chains(chains.order[~left_out], np.concatenate([[0], np.cumsum(counts)]).astype(np.int32), chains.ring)
+    return position, kept
+
+
+def _cross(a: Floats, b: Floats) -> Floats:
+    return a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
 
 
 @dataclass(frozen=True, eq=False)

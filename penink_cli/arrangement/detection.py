@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from penink_cli.arrangement import _planar
-from penink_cli.arrangement.chains import Chains, Joints, chain_lengths, join_ends, link_chains, unbend
+from penink_cli.arrangement.chains import Chains, Joints, chain_lengths, join_ends, link_chains, sharpen, unbend
 from penink_cli.arrangement.gradient import EdgePoints, edge_points, noise_level
 from penink_cli.arrangement.planar import from_units, planar, to_units
 from penink_cli.arrangement.simplification import simplify
@@ -54,6 +54,8 @@ def detect_edges(
         return EdgeList(width, height, strength=np.zeros(0))
     blur = _blur(points, chains, sigma)
     points = replace(points, position=unbend(points, chains, blur))
+    position, chains = sharpen(points, chains, blur)
+    points = replace(points, position=position)
     return _arrange(points, chains, join_ends(points, chains, blur), tolerance, steepness)
 
 
