@@ -50,7 +50,7 @@ def test_the_two_oracles_agree(name):
     assert np.abs(one - other).max() < 1e-9
 
 
-@settings(max_examples=25, deadline=None, derandomize=True)
+@settings(max_examples=14, deadline=None, derandomize=True)
 @given(
     seed=st.integers(0, 2**32),
     width=st.integers(1, 7),
@@ -71,7 +71,7 @@ def test_random_arrangements_match_the_brute_force(seed, width, height, count, l
     assert np.abs(found - expected).max() < UNIT
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(2))
 def test_random_arrangements_match_the_triangulation(seed):
     rng = np.random.default_rng(seed)
     edges = random_edges(rng, 5, 4, 10, lattice=[None, 2][seed % 2])
@@ -236,8 +236,8 @@ def test_one_sample():
     assert (enlarge(image, edges, 1, 1, soften=True).values == 77).all()
 
 
-def test_a_thousand_tiny_edges_in_one_cell():
-    edges = tiny(np.random.default_rng(0), 6, 5, 32)  # 1024 of them
+def test_hundreds_of_tiny_edges_in_one_cell():
+    edges = tiny(np.random.default_rng(0), 6, 5, 24)  # 576: crowded, so that the cell has a grid of its own
     f = samples_for(np.random.default_rng(1), 5, 6)
     value = reconstruct(f, edges, 48, 40)
     x, y = np.meshgrid(np.arange(18, 30) / 8 + 1 / 16 - 0.5, np.arange(20, 26) / 8 + 1 / 16 - 0.5)
