@@ -26,8 +26,12 @@ def command_of(name):
 
 
 def examples(name):
-    """The preformatted paragraphs of a help text."""
-    return [text for kind, text in manual._paragraphs(command_of(name).help) if kind == "lines"]
+    """The preformatted paragraphs of a help text, and of those of a subcommand's own subcommands."""
+    command = command_of(name)
+    texts = [command.help]
+    if name and isinstance(command, click.Group):
+        texts += [part.help for part in command.commands.values()]
+    return [text for help in texts for kind, text in manual._paragraphs(help) if kind == "lines"]
 
 
 @pytest.fixture(scope="module")
