@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from penink_cli.errors import ParameterError
-from penink_cli.formats import texture as texture_format
-from penink_cli.model import Texture
 from penink_cli.options import LENGTH, Finite, Length, output_options
 from penink_cli.streams import reading, source_name, writing
 from penink_cli.texture_options import find_texture, shipped
 from penink_cli.textures.kinds import KINDS
+
+if TYPE_CHECKING:
+    from penink_cli.model import Texture
 
 
 @click.group(name="texture")
@@ -72,6 +73,8 @@ def show(name: str, as_file: bool, device_dpi: float, output: str | None, **_: A
     """Say what a texture is like, and from which tone to which it reaches."""
     found = find_texture(name)
     text = None if as_file else describe(found, device_dpi)
+    from penink_cli.formats import texture as texture_format
+
     with writing(output, binary=False) as out:
         if text is None:
             texture_format.write(out, found)
@@ -104,6 +107,8 @@ def make(
     from penink_cli.textures.make import make as make_texture
 
     made = make_texture(kind, angle=angle, pen=pen, spacing=spacing, layers=layers, seed=seed)
+    from penink_cli.formats import texture as texture_format
+
     with writing(output, binary=False) as out:
         texture_format.write(out, made)
 
@@ -130,5 +135,7 @@ def import_svg(
         drawing = svg_texture.read(stream, source, title, pen, whole)
     if not len(drawing.strokes):
         raise ParameterError("no stroke in the drawing").from_source(source)
+    from penink_cli.formats import texture as texture_format
+
     with writing(output, binary=False) as out:
         texture_format.write(out, drawing)
