@@ -2,6 +2,7 @@
 #
 #   make            virtual environment, install, samples/out/*.ps and *.preview.png
 #   make test       the tests            make lint    ruff and mypy
+#   make figures    the paper's figures with our own pictures: samples/out/figures.pdf, .png and table1.md
 #   make bench      the measurements     make dist    wheel and source distribution
 #   make check-dist both, installed in an empty environment
 #   make fuzz       every reader against anything (SECONDS=600)
@@ -18,7 +19,7 @@ INSTALLED := $(VENV)/.installed
 KERNELS   := $(shell sed -n 's/^sources = \["\(.*\)"\]/\1/p' pyproject.toml)
 BENCHES   := $(patsubst tests/benchmarks/%.py,tests.benchmarks.%,$(filter-out %/__init__.py %/_%,$(wildcard tests/benchmarks/*.py)))
 
-.PHONY: all install samples test lint bench fuzz torture dist check-dist clean needs needs-python
+.PHONY: all install samples figures test lint bench fuzz torture dist check-dist clean needs needs-python
 .DELETE_ON_ERROR:
 
 all: samples
@@ -39,6 +40,11 @@ $(INSTALLED): pyproject.toml penink_cli/__init__.py $(KERNELS) | needs-python
 
 samples: $(INSTALLED) needs
 	$(MAKE) -C samples PATH="$(BIN):$$PATH"
+
+figures: $(INSTALLED) needs
+	$(MAKE) -C samples figures PATH="$(BIN):$$PATH"
+	PATH="$(BIN):$$PATH" $(BIN)/python -m tests.benchmarks.illustrations --table samples/out > samples/out/table1.md
+	@cat samples/out/table1.md
 
 test: $(INSTALLED) needs
 	PATH="$(BIN):$$PATH" $(BIN)/python -m pytest $(TESTS)
