@@ -19,7 +19,7 @@ INSTALLED := $(VENV)/.installed
 KERNELS   := $(shell sed -n 's/^sources = \["\(.*\)"\]/\1/p' pyproject.toml)
 BENCHES   := $(patsubst tests/benchmarks/%.py,tests.benchmarks.%,$(filter-out %/__init__.py %/_%,$(wildcard tests/benchmarks/*.py)))
 
-.PHONY: all install samples figures test lint bench fuzz torture dist check-dist clean needs needs-python
+.PHONY: all install samples figures test lint bench fuzz torture dist check-dist clean needs needs-test needs-python
 .DELETE_ON_ERROR:
 
 all: samples
@@ -29,6 +29,8 @@ install: $(INSTALLED)
 # What only the system's package manager can bring; each is installed if permitted, else named.
 needs:
 	@.ci/need gs ghostscript
+needs-test:
+	@.ci/need chromium-headless-shell chromium-headless-shell
 needs-python:
 	@PYTHON="$(PYTHON)" .ci/need python-venv python3-venv
 	@PYTHON="$(PYTHON)" .ci/need python-headers python3-dev
@@ -46,7 +48,7 @@ figures: $(INSTALLED) needs
 	PATH="$(BIN):$$PATH" $(BIN)/python -m tests.benchmarks.illustrations --table samples/out > samples/out/table1.md
 	@cat samples/out/table1.md
 
-test: $(INSTALLED) needs
+test: $(INSTALLED) needs needs-test
 	PATH="$(BIN):$$PATH" $(BIN)/python -m pytest $(TESTS)
 
 lint: $(INSTALLED)
@@ -64,7 +66,7 @@ torture: $(INSTALLED)
 	$(BIN)/python -m tests.faults.kills 1000
 	$(BIN)/python -m tests.faults.batch 200
 
-bench: $(INSTALLED) needs
+bench: $(INSTALLED) needs needs-test
 	@for bench in $(BENCHES); do echo "== $$bench"; PATH="$(BIN):$$PATH" $(BIN)/python -m $$bench || exit 1; done
 
 dist: $(INSTALLED)

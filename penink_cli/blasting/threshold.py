@@ -68,7 +68,8 @@ def draw(
     wanted = tone
     for left in range(feedback, -1, -1):
         bare = np.ones((math.ceil(h / BLOCK_PT), math.ceil(w / BLOCK_PT)))
-        tall, wide = (np.minimum(BLOCK_PT, s - BLOCK_PT * np.arange(n)) for s, n in zip((h, w), bare.shape, strict=True))
+        tall = np.minimum(BLOCK_PT, h - BLOCK_PT * np.arange(bare.shape[0]))
+        wide = np.minimum(BLOCK_PT, w - BLOCK_PT * np.arange(bare.shape[1]))
         area = np.outer(tall, wide)
         parts = []
         for screen in table.screens:

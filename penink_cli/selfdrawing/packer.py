@@ -81,7 +81,7 @@ _JS_TOKENS = re.compile(r"//[^\n]*|\"(?:[^\"\\\n]|\\.)*\"|`(?:[^`\\]|\\.)*`|[ \t
 
 
 def strip_javascript(text: str) -> str:
-    """The program without comments, indentation, and spaces beside punctuation. Line ends stay: they may end statements.
+    """The program without comments, indentation, and spaces beside punctuation. Line ends stay: some end statements.
 
     >>> strip_javascript('const a = 1;  // one\\n\\n  f("a  b", a)')
     'const a=1;\\nf("a  b",a)'

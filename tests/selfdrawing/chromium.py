@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import fcntl
 import io
 import json
 import os
@@ -33,12 +34,19 @@ class Page:
         self.profile = tempfile.mkdtemp(prefix="penink-chromium-")
         in_read, in_write = os.pipe()
         out_read, out_write = os.pipe()
-        # the browser reads its file 3 and writes its file 4
+        far = [fcntl.fcntl(end, fcntl.F_DUPFD, 20) for end in (in_read, out_write)]
+
+        def connect() -> None:  # the browser reads its file 3 and writes its file 4
+            os.dup2(far[0], 3)
+            os.dup2(far[1], 4)
+
         self.process = subprocess.Popen(
-            ["sh", "-c", f'exec 3<&{in_read} 4>&{out_write}; exec "$@"', "sh", name, *FLAGS,
-             f"--user-data-dir={self.profile}", f"--window-size={width},{height}", "about:blank"],
-            pass_fds=(in_read, out_write), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+            [name, *FLAGS, f"--user-data-dir={self.profile}", f"--window-size={width},{height}", "about:blank"],
+            preexec_fn=connect,  # noqa: PLW1509 - no thread is running yet
+            close_fds=False, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
         )  # fmt: skip
+        for end in far:
+            os.close(end)
         os.close(in_read)
         os.close(out_write)
         self.write, self.read = os.fdopen(in_write, "wb"), os.fdopen(out_read, "rb")

@@ -1,0 +1,136 @@
+"""The EPS that draws itself, in Ghostscript."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from penink_cli.errors import LimitError
+from penink_cli.model import GreyImage, OutlineChoice
+from penink_cli.selfdrawing import packer, postscript
+from tests.selfdrawing.pictures import expected_tone, ghostscript, illustration, printed
+
+CROP = ("-dEPSCrop",)
+
+
+@pytest.fixture(scope="module")
+def eps() -> bytes:
+    return postscript.write(illustration())
+
+
+def ink(page: np.ndarray) -> float:
+    return float(1 - page.mean() / 255)
+
+
+def test_the_devices_tone_grid_equals_enlarge():
+    picture = illustration()
+    program = postscript.write(picture, "readable").decode()
+    n = 108
+    show = "Tone { (%stdout)(w) file exch writehexstring (\\n) print } forall\n"
+    program = program.replace("  Gamma 1 ne { Curve } if\n", show)
+    out = ghostscript(program.encode(), "-sDEVICE=pbmraw", "-r600", "-sOutputFile=/dev/null").decode()
+    tone = np.array([list(bytes.fromhex(line)) for line in out.split()], float)
+    assert tone.shape == (n, n)
+    off = np.abs(tone - expected_tone(picture.layers[0], n, n))
+    assert (off <= 1.5).mean() >= 0.999
+
+
+@pytest.mark.parametrize("packing", ["lzw", "readable"])
+def test_every_packing_draws_the_same(eps, packing, tmp_path):
+    other = postscript.write(illustration(), packing)
+    assert np.array_equal(printed(eps, tmp_path, 150, *CROP), printed(other, tmp_path, 150, *CROP))
+
+
+@pytest.mark.parametrize("dpi", [300, 600, 1200])
+def test_tone_is_that_of_the_samples_on_any_device(eps, dpi, tmp_path):
+    wanted = expected_tone(illustration().layers[0], 108, 108).mean() / 255
+    assert ink(printed(eps, tmp_path, dpi, *CROP)) == pytest.approx(wanted, abs=0.02)
+
+
+@pytest.mark.parametrize("how", ["2 2 scale", "3 0.8 scale", "60 rotate", "-1 1 scale", "1 -1 scale"])
+def test_placed_in_any_way_it_keeps_its_tone(eps, how, tmp_path):
+    place = f"%!\n<< /PageSize [700 700] >> setpagedevice 350 350 translate {how} -54 -54 translate\n".encode()
+    page = printed(place + eps, tmp_path, 300)
+    solid = printed(place + b"0 0 108 108 rectfill showpage\n", tmp_path, 300)
+    wanted = expected_tone(illustration().layers[0], 108, 108).mean() / 255
+    assert ink(page) / ink(solid) == pytest.approx(wanted, abs=0.025)
+    assert ((page < 255) & (solid == 255)).mean() < 0.001, "ink outside the frame"
+
+
+def test_larger_means_more_strokes_not_wider_ones(eps, tmp_path):
+    def edge_length(scale: int) -> tuple[float, float]:
+        body = f"%!\n<< /PageSize [{108 * scale} {108 * scale}] >> setpagedevice {scale} dup scale\n".encode()
+        dark = printed(body + eps, tmp_path, 300) < 128
+        return float(dark.mean()), float((dark[:, 1:] != dark[:, :-1]).mean())
+
+    (tone, edges), (tone4, edges4) = edge_length(1), edge_length(4)
+    assert tone4 == pytest.approx(tone, abs=0.02)
+    assert edges4 == pytest.approx(edges, rel=0.12)
+
+
+def test_three_on_a_page_leave_stacks_and_dictionaries_as_found(eps):
+    out = ghostscript(
+        b"%!\n/showpage {} def /before countdictstack def 7\n" + eps + b"\n" + eps + b"\n2 dup scale " + eps
+        + b"\ncount = countdictstack before sub = = flush\n", "-sDEVICE=pbmraw", "-r300", "-sOutputFile=/dev/null",
+    )  # fmt: skip
+    assert out.split() == [b"1", b"0", b"7"]
+
+
+def test_the_structuring_conventions(eps):
+    lines = eps.decode("ascii").split("\n")
+    assert lines[0] == "%!PS-Adobe-3.0 EPSF-3.0"
+    assert "%%BoundingBox: 0 0 108 108" in lines
+    assert max(map(len, lines)) <= 255
+    assert "%%LanguageLevel: 2" in postscript.write(illustration(), "lzw").decode("ascii")
+
+
+def test_no_name_hides_an_operator():
+    text = "\n".join(packer.source(name) for name in postscript.SOURCES)
+    names = sorted(set(re.findall(r"/([A-Za-z][A-Za-z0-9-]*)", re.sub(r"%.*", "", text))) - {"ge", "currentpagedevice"})
+    asked = "".join(f"systemdict /{name} known {{ ({name} ) print }} if\n" for name in names)
+    assert len(names) > 200
+    assert ghostscript(f"%!\n{asked}".encode(), "-dNODISPLAY") == b""
+
+
+def test_the_program_changes_no_device():
+    text = "".join(packer.source(name) for name in postscript.SOURCES)
+    for operator in ("setpagedevice", "showpage", "initgraphics", "initclip", "copypage", "erasepage", "grestoreall"):
+        assert not re.search(rf"\b{operator}\b", text), operator
+
+
+def test_outlines_are_drawn_and_weigh_in_the_tone(tmp_path):
+    outlined = printed(postscript.write(illustration(outline=OutlineChoice(pen_pt=1.5))), tmp_path, 300, *CROP)
+    plain = printed(postscript.write(illustration()), tmp_path, 300, *CROP)
+    assert not np.array_equal(outlined, plain)
+    # the top of the disc, where the outline runs through light hatching
+    y, x = round(300 * 1.5 * 0.23), round(300 * 1.5 * 0.4)
+    assert (outlined[y - 3 : y + 4, x - 8 : x + 8] < 128).any(axis=0).all()
+
+
+def test_too_many_samples_are_refused_in_one_line():
+    picture = illustration()
+    layer = replace(picture.layers[0], samples=GreyImage(np.zeros((255, 10), np.uint8), 63), edges=None)
+    with pytest.raises(LimitError, match="layer 1: 10 x 255 samples"):
+        postscript.write(replace(picture, layers=(layer,)))
+
+
+def test_a_damaged_illustration_is_refused(tmp_path):
+    from penink_cli.main import _run
+
+    (tmp_path / "a.penink").write_bytes(b"PK\x03\x04 nothing")
+    assert _run(["to-ps", "--self", str(tmp_path / "a.penink"), "-o", str(tmp_path / "a.eps")]) == 1
+    assert _run(["to-html", str(tmp_path / "a.penink"), "-o", str(tmp_path / "a.html")]) == 1
+    assert not (tmp_path / "a.eps").exists() and not (tmp_path / "a.html").exists()
+
+
+@pytest.mark.parametrize("size", [0, 1, 700, 9000])
+def test_lzw_is_undone_by_a_device(size):
+    data = bytes(np.random.default_rng(size).integers(97, 100, size, np.uint8))
+    program = b"""%!
+/O (%stdout) (w) file def
+{ /F currentfile /ASCII85Decode filter /LZWDecode filter def { F read { O exch write } { exit } ifelse } loop } exec
+"""
+    assert ghostscript(program + packer.ascii85(packer.lzw(data)), "-dNODISPLAY") == data
