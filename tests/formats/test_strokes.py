@@ -7,7 +7,7 @@ from importlib import resources
 import jsonschema
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from penink_cli.errors import FormatError, ParameterError
@@ -52,6 +52,7 @@ def test_the_compiled_build_is_the_one_under_test():
     assert _stroke_lines.COMPILED
 
 
+@settings(deadline=None)
 @given(drawings())
 def test_round_trip(s):
     back = read(written(s))
@@ -62,6 +63,7 @@ def test_round_trip(s):
     assert written(back) == written(read(written(back)))
 
 
+@settings(deadline=None)
 @given(drawings())
 def test_every_line_is_what_json_and_the_schema_say(s):
     schema = json.loads(resources.files("penink_cli.formats").joinpath("schemas/strokes.schema.json").read_text())
@@ -95,6 +97,7 @@ def test_one_stroke_in_other_words(line, ending):
     assert s.points.tolist() == [[1.0, 2.0]]
 
 
+@settings(deadline=None)
 @given(st.decimals(-99999, 99999, places=5).map(str))
 def test_numbers_are_the_doubles_that_python_reads(text):
     assert read(HEADER + b'{"width": 1, "points": [[%s, 0]]}' % text.encode()).points[0, 0] == float(text)
