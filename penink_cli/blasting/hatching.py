@@ -94,6 +94,8 @@ def hatch_sheet(
             )
             strokes.append(part.drawn(runs, moved))
         for i, (layer, pen) in enumerate(zip(layers, pens)):
+            if layer.spacing_pt > 0:
+                continue  # what fills a gap would lie closer than it may
             part = candidates.lattice(
                 sheet, layer, pen, gain_pt, 40.0, 1.5, FILL_LEAST, borders, seed * 64 + turn * 8 + i
             )

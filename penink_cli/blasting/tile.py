@@ -19,7 +19,7 @@ ROUNDS = 4
 MOVES = (-0.5, 0.5, 0.0)
 STEP_PT = 1.5
 #: Copies of strokes that are laid out at a time: memory stays bounded on any sheet.
-CHUNK = 100_000
+CHUNK = 25_000
 #: A stroke is not tried where the tone is lighter by this than where it enters.
 SLACK = 0.15
 
@@ -196,7 +196,8 @@ def _place(
         )
         start, end = runs[:, 1].astype(np.float64), runs[:, 2].astype(np.float64)
         points, first = curves.cut(points, first, pieces, runs[:, 0], start, end)
-        points += np.repeat(moved, np.diff(first), axis=0)
+        # a stroke moved sideways may have left the frame by as much
+        points = np.clip(points + np.repeat(moved, np.diff(first), axis=0), borders.box[:2], borders.box[2:])
         out.append(Strokes(sheet.width, sheet.height, points, first, widths[runs[:, 0]]))
     return out
 

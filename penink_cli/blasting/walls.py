@@ -72,7 +72,9 @@ def build(edges: EdgeList | None, sheet: Sheet, pen_pt: float) -> Walls:
     w, h = sheet.width, sheet.height
     # half of what the pen is pressed to at the most, but some of a tiny sheet must be left
     d = min(0.62 * pen_pt, 0.25 * w, 0.25 * h)
-    segments: Floats = np.array([[d, d, w - d, d], [w - d, d, w - d, h - d], [w - d, h - d, d, h - d], [d, h - d, d, d]])
+    segments: Floats = np.array(
+        [[d, d, w - d, d], [w - d, d, w - d, h - d], [w - d, h - d, d, h - d], [d, h - d, d, d]]
+    )
     if edges is not None and len(edges.edges):
         segments = np.concatenate([segments, strong_edges(edges, sheet)])
     # no piece is longer than a cell, so that the bounding boxes touch few cells
@@ -91,7 +93,15 @@ def build(edges: EdgeList | None, sheet: Sheet, pen_pt: float) -> Walls:
     cell = (lo[which, 1] + k // wide[which]) * columns + lo[which, 0] + k % wide[which]
     order = np.argsort(cell, kind="stable")
     begin = np.searchsorted(cell[order], np.arange(columns * rows + 1))
-    return Walls(segments, inside, begin.astype(np.int64), np.ascontiguousarray(which[order]), columns, rows, (d, d, w - d, h - d))
+    return Walls(
+        segments,
+        inside,
+        begin.astype(np.int64),
+        np.ascontiguousarray(which[order]),
+        columns,
+        rows,
+        (d, d, w - d, h - d),
+    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,9 +117,7 @@ class Pieces:
     bounded: npt.NDArray[np.uint8]
 
 
-def cut(
-    walls: Walls, lines: curves.Polylines, painted: Floats, slack: tuple[Floats, Floats]
-) -> Pieces:
+def cut(walls: Walls, lines: curves.Polylines, painted: Floats, slack: tuple[Floats, Floats]) -> Pieces:
     """Cut polylines where they cross walls, less half of what they paint, and leave out what is outside the frame.
 
     painted: (n,) the width that each paints, points. slack: (n,) each, how many samples at the start and at the end
@@ -156,8 +164,9 @@ def cut(
     end = np.where(wall[left + 1] == 0, end - slack[1][curve], end)
     keep = ((end - start) * step[curve] > SHORTEST_PT) | (count[curve] == 1)
     middle = np.clip(0.5 * (start + end), 0, count[curve] - 1)
-    lo = np.minimum(middle.astype(np.int64), count[curve] - 1)
-    p = points[lines.first[curve] + lo]
+    lo = np.minimum(middle.astype(np.int64), np.maximum(count[curve] - 2, 0))
+    a, b = lines.first[curve] + lo, lines.first[curve] + np.minimum(lo + 1, count[curve] - 1)
+    p = points[a] + (middle - lo)[:, None] * (points[b] - points[a])
     low_x, low_y, high_x, high_y = walls.box
     keep &= (p[:, 0] >= low_x) & (p[:, 0] <= high_x) & (p[:, 1] >= low_y) & (p[:, 1] <= high_y)
     bounded = wall[left] | (wall[left + 1] << 1)

@@ -1,0 +1,144 @@
+"""What blasting is judged by: tone, evenness, crispness, speed. ``python -m tests.benchmarks.blasting [TABLE]...``
+
+Tables: tone devices pens evenness disc speed. Each needs Ghostscript but speed.
+"""
+
+from __future__ import annotations
+
+import resource
+import subprocess
+import sys
+import time
+
+import numpy as np
+
+from penink_cli.blasting.blast import blast
+from penink_cli.model import EdgeList, Floats
+from penink_cli.texture_options import find_texture
+from tests.blasting import measures
+
+
+def picture(name: str) -> Floats:
+    """Tone of a photograph, or of a ramp."""
+    if name == "ramp":
+        return np.tile(np.linspace(0, 1, 600), (300, 1))
+    from skimage import data
+
+    values = getattr(data, name)().astype(float)
+    if values.ndim == 3:
+        values = values[..., :3] @ [0.299, 0.587, 0.114]
+    return 1 - values / 255
+
+
+def draw(name: str, inches: float, texture: str = "crosshatch", **options):
+    tone = picture(name)
+    start = time.process_time()
+    strokes = blast(tone, inches * 72, inches * 72 * len(tone) / tone.shape[1], None, find_texture(texture), **options)
+    return tone, strokes, time.process_time() - start
+
+
+def tone() -> None:
+    print("tone at 600 dpi, %:        inches  texture      rule      RMS   bias  worst   long  strokes  CPU s")
+    photos = ("ramp", "camera", "moon", "coins", "chelsea", "rocket")
+    rows = [(n, w, "crosshatch", "best") for n in photos for w in (2, 4, 8)]
+    rows += [(n, 4, "crosshatch", "strict") for n in photos[:4]]
+    textures = ("parallel", "grain", "crosshatch4", "stipple", "scribble", "grass", "brick")
+    rows += [(n, 4, t, "best") for t in textures for n in photos[:4]]
+    for name, inches, texture, rule in rows:
+        wanted, strokes, seconds = draw(name, inches, texture, rule=rule)
+        rms, bias, worst = measures.tone_figures(strokes, wanted)
+        print(
+            f"  {name:24} {inches:5}   {texture:11}  {rule:7} {rms:5.2f}  {bias:+5.2f}  {worst:5.1f}"
+            f"  {measures.long_share(strokes):5.2f}  {len(strokes):7}  {seconds:5.2f}",
+            flush=True,
+        )
+
+
+def devices() -> None:
+    print("blasted anew for a device:     dpi    RMS   bias")
+    for name in ("ramp", "camera"):
+        for dpi in (300, 600, 1200):
+            wanted, strokes, _ = draw(name, 4, device_dpi=dpi)
+            rms, bias, _ = measures.tone_figures(strokes, wanted, dpi)
+            print(f"  {name:24} {dpi:7}  {rms:5.2f}  {bias:+5.2f}", flush=True)
+
+
+def pens() -> None:
+    print("one 0.3 mm pen:            inches    RMS   bias")
+    biases = []
+    for inches in (3, 6, 12):
+        wanted, strokes, _ = draw("camera", inches, pen_pt=0.3 / 25.4 * 72)
+        rms, bias, _ = measures.tone_figures(strokes, wanted)
+        biases.append(abs(bias))
+        print(
+            f"  camera {inches:23}    {rms:5.2f}  {bias:+5.2f}  {set(np.round(strokes.widths, 4).tolist())}", flush=True
+        )
+    print(f"  spread of |bias| {max(biases) - min(biases):.2f}")
+
+
+def even() -> None:
+    print("evenness, flat, 8 × 8 in:   tone  angle     cv spread doubled   long gaping aligned  over 20 pt  tone RMS")
+    for texture in ("parallel", "crosshatch"):
+        for level in (0.1, 0.2, 0.35, 0.55):
+            wanted = np.full((64, 64), level)
+            strokes = blast(wanted, 576, 576, None, find_texture(texture))
+            rms = measures.tone_figures(strokes, wanted)[0]
+            for angle in (-45.0, 45.0) if level > 0.5 and texture == "crosshatch" else (-45.0,):
+                f = measures.evenness(strokes, angle)
+                print(
+                    f"  {texture:24} {level:5}  {angle:5}  {f['cv']:5.3f} {f['spread']:6.3f} {f['doubled']:7.4f}"
+                    f" {f['doubled_long']:6.4f} {f['gaping']:6.4f} {f['aligned_ends']:7.3f}"
+                    f"  {measures.long_share(strokes):10.3f}  {rms:8.2f}",
+                    flush=True,
+                )
+
+
+def disc() -> None:
+    print("a disc of 0.8 on 0.15, ink: inches  edges   first point within, without")
+    y, x = np.mgrid[:600, :600] - 299.5
+    wanted = np.where(np.hypot(x, y) < 150, 0.8, 0.15)
+    turn = np.arange(180) * np.pi / 90
+    circle = 300 + 150 * np.column_stack([np.cos(turn), np.sin(turn)])
+    ring = EdgeList(600, 600, circle, np.column_stack([np.arange(180), (np.arange(180) + 1) % 180]))
+    for inches in (2, 4):
+        for edges in (ring, None):
+            strokes = blast(wanted, inches * 72, inches * 72, edges, find_texture("crosshatch"))
+            ink = measures.rendered(strokes, 600)
+            yy, xx = np.mgrid[: len(ink), : len(ink)] + 0.5 - len(ink) / 2
+            r = np.hypot(xx, yy) * 72 / 600 - inches * 18
+            within, without = ink[(r < 0) & (r > -1)].mean(), ink[(r > 0) & (r < 1)].mean()
+            print(f"  {inches:31}  {'yes' if edges else 'no ':5}   {within:.2f}, {without:.2f}", flush=True)
+
+
+SPEED = """
+import sys, resource, time, numpy as np
+from penink_cli.blasting.blast import blast
+from penink_cli.texture_options import find_texture
+w, h, threads, rule = float(sys.argv[1]) * 72, float(sys.argv[2]) * 72, int(sys.argv[3]), sys.argv[4]
+from tests.benchmarks.blasting import picture
+tone, texture = picture("camera"), find_texture("crosshatch")
+c, t = time.process_time(), time.perf_counter()
+s = blast(tone, w, h, None, texture, threads=threads, rule=rule)
+c, t = time.process_time() - c, time.perf_counter() - t
+import hashlib
+digest = hashlib.sha256(s.points.tobytes() + s.widths.tobytes()).hexdigest()[:12]
+peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+print(f"{c:7.2f}  {t:7.2f}  {peak:7.0f}  {len(s):8}  {digest}")
+"""
+
+
+def speed() -> None:
+    print("speed, crosshatch:   inches  threads  rule       CPU s   wall s       MB   strokes  digest")
+    sizes = [(4, 4, 1, "best"), (8, 8, 1, "best"), (8, 8, 2, "best"), (8, 8, 8, "best"), (8, 8, 1, "strict")]
+    for w, h, threads, rule in [*sizes, (24, 36, 2, "best")]:
+        arguments = [sys.executable, "-c", SPEED, str(w), str(h), str(threads), rule]
+        done = subprocess.run(arguments, capture_output=True, text=True, check=True)
+        print(f"  {w:12} × {h:<10}  {threads:5}  {rule:7}  {done.stdout.strip()}", flush=True)
+    print(f"  (this process {resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024:.0f} MB)")
+
+
+TABLES = {"tone": tone, "devices": devices, "pens": pens, "evenness": even, "disc": disc, "speed": speed}
+
+if __name__ == "__main__":
+    for table in sys.argv[1:] or TABLES:
+        TABLES[table]()

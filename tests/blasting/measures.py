@@ -1,0 +1,144 @@
+"""What a drawing is measured by: its tone as the eye sees it, and how evenly its lines lie.
+
+All of it looks at the finished drawing (rendered by Ghostscript, or the strokes themselves) and knows nothing
+of how it was made.
+"""
+
+from __future__ import annotations
+
+import io
+import subprocess
+
+import numpy as np
+from scipy.ndimage import gaussian_filter, map_coordinates
+
+from penink_cli.formats import postscript
+from penink_cli.formats.page import lay_out
+from penink_cli.model import Floats, Strokes
+
+EYE_INCH = 1 / 16
+GRID = 100  # samples to the inch at which tones are compared
+
+
+def rendered(strokes: Strokes, dpi: float) -> Floats:
+    """The strokes printed at dpi, (rows, columns): 1 where there is ink."""
+    out = io.BytesIO()
+    postscript.write(out, [strokes], lay_out([strokes]))
+    page = subprocess.run(
+        ["gs", "-q", "-dSAFER", "-dBATCH", "-dNOPAUSE", "-dEPSCrop", f"-r{dpi:g}", "-sDEVICE=pgmraw",
+         "-sOutputFile=-", "-"],
+        input=out.getvalue(), capture_output=True, check=True,
+    ).stdout  # fmt: skip
+    head = page.split(b"\n", 3) if not page.split(b"\n")[1].startswith(b"#") else page.split(b"\n", 4)
+    columns, rows = map(int, head[-3].split())
+    return 1.0 - np.frombuffer(head[-1], np.uint8, rows * columns).reshape(rows, columns) / 255.0
+
+
+def shrunk(values: Floats, rows: int, columns: int) -> Floats:
+    """Means over rows × columns equal rectangles, whatever their borders cut through."""
+    for axis, n in ((0, rows), (1, columns)):
+        m = values.shape[axis]
+        total = np.insert(np.cumsum(values, axis=axis), 0, 0.0, axis=axis)
+        at = np.linspace(0, m, n + 1)
+        lo = np.minimum(at.astype(int), m - 1)
+        f = np.expand_dims(at - lo, 1 - axis)
+        edge = np.take(total, lo, axis) * (1 - f) + np.take(total, lo + 1, axis) * f
+        values = np.diff(edge, axis=axis) * (n / m)
+    return values
+
+
+def stretched(tone: Floats, rows: int, columns: int) -> Floats:
+    """A tone at rows × columns, shrunk or interpolated."""
+    if rows <= tone.shape[0] and columns <= tone.shape[1]:
+        return shrunk(tone, rows, columns)
+    y = (np.arange(rows) + 0.5) * tone.shape[0] / rows - 0.5
+    x = (np.arange(columns) + 0.5) * tone.shape[1] / columns - 0.5
+    return map_coordinates(tone, np.meshgrid(y, x, indexing="ij"), order=1, mode="nearest")
+
+
+def tone_error(strokes: Strokes, tone: Floats, dpi: float = 600) -> Floats:
+    """Tone wanted less tone printed, as the eye sees both, in percent: positive is too light. GRID samples an inch."""
+    columns, rows = (max(8, round(side / 72 * GRID)) for side in (strokes.width, strokes.height))
+    printed = shrunk(rendered(strokes, dpi), rows, columns)
+    return 100 * gaussian_filter(stretched(tone, rows, columns) - printed, EYE_INCH * GRID, mode="reflect")
+
+
+def tone_figures(strokes: Strokes, tone: Floats, dpi: float = 600) -> tuple[float, float, float]:
+    """RMS, bias and worst of `tone_error`."""
+    e = tone_error(strokes, tone, dpi)
+    return float(np.sqrt((e * e).mean())), float(e.mean()), float(np.abs(e).max())
+
+
+def flattened(strokes: Strokes, i: int) -> Floats:
+    """Stroke i as a polyline of steps of a point or so."""
+    p = strokes[i]
+    out = [p[:1]]
+    for k in range((len(p) - 1) // 3):
+        a, b, c, d = p[3 * k : 3 * k + 4]
+        n = int(np.abs(np.diff(p[3 * k : 3 * k + 4], axis=0)).sum()) + 2
+        t = np.linspace(0, 1, n)[1:, None]
+        out.append((1 - t) ** 3 * a + 3 * (1 - t) ** 2 * t * b + 3 * (1 - t) * t * t * c + t**3 * d)
+    return np.concatenate(out)
+
+
+def lengths(strokes: Strokes) -> Floats:
+    """Length of each stroke, points."""
+    legs = (np.diff(flattened(strokes, i), axis=0) for i in range(len(strokes)))
+    return np.array([np.hypot(*leg.T).sum() for leg in legs])
+
+
+def long_share(strokes: Strokes) -> float:
+    """The share of all ink that is in strokes of over 20 pt."""
+    length = lengths(strokes)
+    ink = length * strokes.widths
+    return float(ink[length > 20].sum() / max(ink.sum(), 1e-9))
+
+
+def evenness(strokes: Strokes, angle: float, margin: float = 14.0, step: float = 7**0.5) -> dict[str, float]:
+    """How evenly the strokes within 15° of angle (degrees, y down) lie on a field of one tone.
+
+    Lines are scanned across the hatch every `step` points, and the gaps between the strokes they meet are pooled:
+    cv, their deviation by their mean; spread, half the distance of the quantiles 16 and 84 % by the median; doubled and
+    gaping, the shares under 0.4 and over 1.8 of the mean; doubled_long, those doubled by a pair that stays so for 6 pt.
+    aligned_ends: the share of strokes whose first end has the first end of one in a neighbouring lane within 2 pt.
+    """
+    along = np.array([np.cos(np.radians(angle)), np.sin(np.radians(angle))])
+    across = np.array([-along[1], along[0]])
+    met, starts = [], []
+    for i in range(len(strokes)):
+        line = flattened(strokes, i)
+        chord = line[-1] - line[0]
+        if abs(chord @ across) > 0.26 * abs(chord @ along):
+            continue
+        u, v = line @ along, line @ across
+        if u[0] > u[-1]:
+            u, v = u[::-1], v[::-1]
+        if line.min() > 1 and line[:, 0].max() < strokes.width - 1 and line[:, 1].max() < strokes.height - 1:
+            starts.append((u[0], v[0]))
+        columns = np.arange(np.ceil(u[0] / step), np.floor(u[-1] / step) + 1)
+        met.append(np.column_stack([columns, np.interp(columns * step, u, v), np.full(len(columns), i)]))
+    cross = np.concatenate(met)
+    place = cross[:, :1] * step * along + cross[:, 1:2] * across
+    inside = ((place > margin) & (place < (strokes.width - margin, strokes.height - margin))).all(axis=1)
+    cross = cross[inside]
+    cross = cross[np.lexsort((cross[:, 1], cross[:, 0]))]
+    same = cross[1:, 0] == cross[:-1, 0]
+    gaps = np.diff(cross[:, 1])[same]
+    pairs = np.sort(np.column_stack([cross[:-1, 2], cross[1:, 2]])[same], axis=1)
+    mean = gaps.mean()
+    close = gaps < 0.4 * mean
+    _, count = np.unique(pairs[close], axis=0, return_counts=True)
+    low, median, high = np.percentile(gaps, [16, 50, 84])
+    ends = np.array(sorted(starts))
+    aligned = 0
+    for u, v in ends:
+        near = ends[np.searchsorted(ends[:, 0], u - 2) : np.searchsorted(ends[:, 0], u + 2), 1] - v
+        aligned += bool(((np.abs(near) > 0.4 * mean) & (np.abs(near) < 1.6 * mean)).any())
+    return {
+        "cv": gaps.std() / mean,
+        "spread": (high - low) / 2 / median,
+        "doubled": close.mean(),
+        "doubled_long": count[count * step > 6].sum() / len(gaps),
+        "gaping": (gaps > 1.8 * mean).mean(),
+        "aligned_ends": aligned / max(1, len(ends)),
+    }

@@ -1,0 +1,91 @@
+"""The sheet: ink is counted exactly once, as a slow oracle counts it, and what is due follows."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from penink_cli.blasting.curves import Polylines
+from penink_cli.blasting.sheet import CELL_PT, Sheet, halve, resample
+
+
+def oracle(points, width, sheet):
+    """Subpixels whose centre is within half the width of the polyline."""
+    h, w = sheet.rows * 8, sheet.columns * 8
+    y, x = np.mgrid[:h, :w] + 0.5
+    p = points * sheet.scale
+    inked = np.zeros((h, w), bool)
+    for a, b in pairwise(p):
+        d = b - a
+        t = np.clip(((x - a[0]) * d[0] + (y - a[1]) * d[1]) / max(d @ d, 1e-12), 0, 1)
+        inked |= np.hypot(x - a[0] - t * d[0], y - a[1] - t * d[1]) < width * sheet.pitch / 2
+    return inked
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_painting_counts_what_the_oracle_counts(seed):
+    rng = np.random.default_rng(seed)
+    side = 20 * CELL_PT
+    sheet = Sheet(np.zeros((2, 2)), side, side, 0.0)
+    points = rng.uniform(-3, side + 3, (2, 2))
+    if seed % 4 == 0:
+        points[1, seed % 8 // 4] = points[0, seed % 8 // 4]  # along a row or a column
+    width = rng.uniform(0.3, 4)
+    fresh = sheet.paint(Polylines(points, np.array([0, 2])), np.array([width]))
+    wanted = oracle(points, width, sheet)
+    assert abs(int(fresh[0]) - int(wanted.sum())) <= 0.002 * wanted.sum() + 6
+    assert sheet.counts.sum() == fresh[0]
+    again = sheet.paint(Polylines(points, np.array([0, 2])), np.array([width]))
+    assert again[0] == 0
+
+
+def test_a_device_widens_a_stroke_by_its_pixels():
+    sheet = Sheet(np.zeros((2, 2)), 200, 200, 0.24)
+    rng = np.random.default_rng(0)
+    for angle in (0.0, 44.0):
+        along = np.array([np.cos(np.radians(angle)), np.sin(np.radians(angle))])
+        areas = []
+        for start in rng.uniform(20, 40, (40, 2)):
+            sheet.clear()
+            ink = sheet.paint(Polylines(np.array([start, start + 120 * along]), np.array([0, 2])), np.ones(1))
+            areas.append(ink[0] / sheet.pitch**2)
+        width = 1 + 0.24 * np.abs(along).sum()
+        assert abs(np.mean(areas) - 120 * width - np.pi / 4 * width**2) < 1.5
+
+
+def test_what_is_due_is_kept_up_to_date():
+    rng = np.random.default_rng(3)
+    sheet = Sheet(np.full((4, 4), 0.5), 80, 80, 0.12)
+    sheet.owe(sheet.tone)
+    lines = Polylines(rng.uniform(5, 75, (40, 1, 2)).repeat(30, 1).reshape(-1, 2), np.arange(41) * 30)
+    lines = Polylines(lines.points + np.tile(np.linspace(-10, 10, 30), 40)[:, None], lines.first)
+    sheet.place(lines, np.full(40, 0.5), [np.arange(40)])
+    kept = sheet.residual.copy()
+    sheet.owe(sheet.tone)
+    assert np.abs(kept - sheet.residual).max() < 0.04
+    assert sheet.residual.mean() < 0.49
+
+
+def test_no_ink_is_credited_across_a_strong_step():
+    tone = np.zeros((40, 40))
+    tone[:, 20:] = 1.0
+    sheet = Sheet(tone, 40 * CELL_PT, 40 * CELL_PT, 0.0)
+    sheet.owe(sheet.tone)
+    assert np.abs(sheet.residual[:, :20]).max() < 1e-6
+    line = np.array([[21.0, 0.0], [21.0, 40]]) * CELL_PT
+    sheet.paint(Polylines(line, np.array([0, 2])), np.array([1.0]), splat=True)
+    assert np.abs(sheet.residual[:, :20]).max() < 1e-6
+
+
+@pytest.mark.parametrize("shape", [(1, 1), (3, 7), (100, 90), (33, 64)])
+def test_resampling_keeps_the_mean_of_what_it_shrinks(shape):
+    tone = np.random.default_rng(0).random(shape)
+    for rows, columns in ((1, 1), (5, 3), (33, 64), (200, 150)):
+        out = resample(tone, rows, columns)
+        assert out.shape == (rows, columns) and out.min() >= 0 and out.max() <= 1
+        if rows <= shape[0] and columns <= shape[1]:
+            assert abs(out.mean() - tone.mean()) < 1e-9
+
+
+def test_halving_repeats_an_odd_row():
+    assert halve(np.array([[1.0, 3.0, 5.0]], np.float32)).tolist() == [[2.0, 5.0]]

@@ -1,0 +1,145 @@
+"""Textures: those shipped, those made, those imported, and what their file may not hold."""
+
+import io
+import json
+from importlib import resources
+
+import jsonschema
+import numpy as np
+import pytest
+
+from penink_cli.blasting.reach import reachable
+from penink_cli.blasting.tile import thresholds
+from penink_cli.errors import FormatError, ParameterError
+from penink_cli.formats import svg_texture, texture
+from penink_cli.texture_options import find_texture, shipped
+from penink_cli.textures.kinds import KINDS
+from penink_cli.textures.make import MAKERS, make
+
+GOOD = {
+    "format": "penink-texture", "version": 1, "name": "dashes", "width": 144, "height": 144, "whole": True,
+    "strokes": [{"priority": 0, "width": 0.4, "points": [[0, 8], [12, 8], [24, 9], [36, 9]]}],
+    "layers": [{"angle": 10, "from": 0, "to": 0.5, "pen": 0.4}],
+}  # fmt: skip
+
+
+def read(document) -> texture.Texture:
+    text = document if isinstance(document, bytes) else json.dumps(document).encode()
+    return texture.read(io.BytesIO(text), "t.json")
+
+
+def written(found) -> bytes:
+    out = io.BytesIO()
+    texture.write(out, found)
+    return out.getvalue()
+
+
+def test_every_kind_is_shipped():
+    assert sorted(KINDS) == sorted(MAKERS) == shipped()
+
+
+@pytest.mark.parametrize("name", sorted(KINDS))
+def test_a_shipped_texture_reaches_black_and_fills_up_steadily(name):
+    found = find_texture(name)
+    assert reachable(found, 72 / 600)[1] >= 0.975
+    enters = thresholds(found, 72 / 600)
+    assert enters[0] == 0 and (np.diff(enters) >= 0).all() and enters[-1] > 0.95
+
+
+@pytest.mark.parametrize("name", sorted(set(KINDS) - {"brick"}))
+@pytest.mark.parametrize("part", [0.1, 0.4])
+def test_every_prefix_is_evenly_spread(name, part):
+    """The ink of a prefix in 9 parts of the tile differs less than that of strokes thrown at random."""
+    strokes = find_texture(name).strokes
+    n = int(part * len(strokes))
+    middles = np.array([strokes[i].mean(axis=0) for i in range(n)]) % (strokes.width, strokes.height)
+    lot, _, _ = np.histogram2d(*middles.T, bins=3, range=[[0, strokes.width], [0, strokes.height]])
+    assert lot.std() < 0.75 * np.sqrt(n / 9)
+
+
+def test_a_shipped_texture_is_what_make_makes():
+    assert written(make("stipple")) == written(find_texture("stipple"))
+
+
+def test_writing_and_reading_again_changes_nothing():
+    found = read(GOOD)
+    again = read(written(found))
+    assert written(again) == written(found)
+    assert again.whole and again.layers == found.layers and again.layers[0].high == 0.5
+
+
+def test_what_is_written_obeys_the_schema():
+    schema = json.loads((resources.files("penink_cli.formats") / "schemas" / "texture.schema.json").read_text("utf-8"))
+    jsonschema.validate(json.loads(written(find_texture("grain"))), schema)
+    jsonschema.validate(GOOD, schema)
+
+
+def test_strokes_are_sorted_by_priority():
+    strokes = [{"priority": p, "width": 1 + p, "points": [[p, 0]]} for p in (3, 1, 2)]
+    found = read({**GOOD, "strokes": strokes})
+    assert found.priorities.tolist() == [1, 2, 3] and found.strokes.points[:, 0].tolist() == [1, 2, 3]
+
+
+@pytest.mark.parametrize(
+    ("change", "complaint"),
+    [
+        ({"format": "x"}, "format is"),
+        ({"version": 2}, "version is 2"),
+        ({"name": 3}, "name is 3"),
+        ({"width": 0}, "width is 0"),
+        ({"height": True}, "height is true"),
+        ({"whole": 1}, "whole is 1"),
+        ({"strokes": []}, "at least one"),
+        ({"strokes": [3]}, "stroke 0 is 3"),
+        ({"strokes": [{"width": 1, "points": [[0, 0]]}]}, 'stroke 0: member "priority" is missing'),
+        ({"strokes": [{"priority": 0, "width": -1, "points": [[0, 0]]}]}, "stroke 0: width"),
+        ({"strokes": [{"priority": 0, "width": 1, "points": [[0, 0], [1, 1]]}]}, "stroke 0: 2 points"),
+        ({"strokes": [{"priority": 0, "width": 1, "points": []}]}, "stroke 0: 0 points"),
+        ({"strokes": [{"priority": 0, "width": 1, "points": [[0, "a"]]}]}, "stroke 0: point 0"),
+        ({"strokes": [{"priority": 0, "width": 1, "points": [[0, 1e9]]}]}, "stroke 0: a point beyond"),
+        ({"layers": [{"angle": 0, "from": 0.5, "to": 0.5, "pen": 1}]}, 'layer 0: "from"'),
+        ({"layers": [{"angle": 0, "from": 0, "pen": 1}]}, 'layer 0: member "to" is missing'),
+        ({"layers": [{"angle": 0, "from": 0, "to": 1, "pen": 1, "wave": 9}]}, "layer 0: a wave"),
+    ],
+)
+def test_a_wrong_texture_is_refused_and_the_place_named(change, complaint):
+    with pytest.raises(FormatError, match="t.json") as error:
+        read({**GOOD, **change})
+    assert complaint in str(error.value)
+
+
+def test_an_unknown_texture_is_refused_with_the_known_ones():
+    with pytest.raises(ParameterError, match="stipple"):
+        find_texture("stippel")
+
+
+SVG = b"""<svg xmlns="http://www.w3.org/2000/svg" width="96" height="48" viewBox="0 0 48 24">
+<g transform="translate(2 0)" stroke="black" stroke-width="0.5"><path d="M0 0 L9 0 Q12 5 9 9 M3 3 c1 0 1 1 2 1"/>
+<line x1="0" y1="6" x2="12" y2="6" stroke-width="1"/></g><circle cx="20" cy="10" r="4"/></svg>"""
+
+
+def test_a_drawing_becomes_a_texture_in_its_own_units():
+    found = svg_texture.read(io.BytesIO(SVG), "d.svg", "d")
+    assert (found.strokes.width, found.strokes.height) == (72, 36)  # 96 × 48 CSS pixels
+    assert len(found.strokes) == 4 and np.diff(found.strokes.first).tolist()[:3] == [7, 4, 4]
+    assert np.allclose(found.strokes[2][[0, -1]], [[3, 9], [21, 9]])
+    assert np.allclose(found.strokes.widths, [0.75, 0.75, 1.5, 0.4])
+    ring = found.strokes[3]
+    assert np.allclose(np.hypot(*(ring[::3] - (30, 15)).T), 6) and np.allclose(ring[0], ring[-1])
+    assert svg_texture.read(io.BytesIO(SVG), "d.svg", "d", pen_pt=1.0).strokes.widths.tolist() == [1.0] * 4
+
+
+@pytest.mark.parametrize("text", [b"", b"<svg", b"<a/>", b"\xff\xfe", b'<svg xmlns="http://www.w3.org/2000/svg"/>'])
+def test_what_is_no_drawing_is_refused(text):
+    with pytest.raises(FormatError, match=r"d\.svg"):
+        svg_texture.read(io.BytesIO(text), "d.svg", "d")
+
+
+def test_the_command_lists_shows_makes_and_imports(penink):
+    assert penink("texture", "list").stdout.decode().split("\n")[0].startswith("brick")
+    shown = penink("texture", "show", "crosshatch")
+    assert shown.returncode == 0 and "0.990" in shown.stdout.decode()
+    assert texture.read(io.BytesIO(penink("texture", "show", "--json", "grass").stdout), "x").name == "grass"
+    assert texture.read(io.BytesIO(penink("texture", "import", input=SVG).stdout), "x").name == "imported"
+    wrong = penink("texture", "import", input=b"<a/>")
+    assert wrong.returncode == 1 and wrong.stderr.count(b"\n") == 1 and b"<stdin>" in wrong.stderr
