@@ -142,7 +142,7 @@ def hatch(sheet: Sheet, coverage: Floats, layer: HatchLayer, pen_pt: float, gain
 
     def at_parameter(t: Floats) -> Floats:
         du = start[who] + (end - start)[who] * t
-        uu, vv = middle_u[who] + du, middle_v[who] + slope[who] * du + bow[who] * 4.0 * t * (1.0 - t)
+        uu, vv = middle_u[who] + du, middle_v[who] + slope[who] * du + bow[who] * (4.0 * t * (1.0 - t) - 2 / 3)
         return uu[:, None] * along + (vv + wander(uu, vv))[:, None] * across
 
     # Hermite to Bézier: the tangents are chords over a small stretch, so that no function needs a derivative

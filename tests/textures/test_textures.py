@@ -103,7 +103,7 @@ def test_strokes_are_sorted_by_priority():
     ],
 )
 def test_a_wrong_texture_is_refused_and_the_place_named(change, complaint):
-    with pytest.raises(FormatError, match="t.json") as error:
+    with pytest.raises(FormatError, match=r"t\.json") as error:
         read({**GOOD, **change})
     assert complaint in str(error.value)
 
