@@ -53,10 +53,11 @@ def main(runs: int) -> int:
                 print(f"run {run}: {subcommand}, {number.name}: torn, {len(found)} bytes")
                 return 1
             # Before the interpreter has come to our first line, Ctrl-C is its own affair.
-            if err and not (number == signal.SIGINT and process.returncode == -signal.SIGINT):
+            if err and not (number == signal.SIGINT and b"KeyboardInterrupt" in err):
                 print(f"run {run}: {subcommand}, {number.name}: said {err[-300:]!r}")
                 return 1
-            seen[signal.Signals(-process.returncode).name if process.returncode else "ended by itself"] += 1
+            status = process.returncode
+            seen["ended by itself" if status >= 0 else signal.Signals(-status).name] += 1
             seen["new file"] += found != b"old"
             seen["left a temporary file"] += any(n.startswith(".penink-") for n in os.listdir(folder / "out"))
             if err:
