@@ -5,7 +5,6 @@ The camera man, 96 x 96 and 128 x 128 samples of 64 levels; tone by a low-pass o
 
 from __future__ import annotations
 
-import os
 import subprocess
 import sys
 import tempfile
@@ -47,11 +46,14 @@ def run(
     size = f"<< /PageSize [{width * scale} {height * scale}] >> setpagedevice {scale} dup scale\n"
     source.write_bytes(b"%!\n" + size.encode() + program)
     options = ["-q", "-dBATCH", "-dNOPAUSE", "-dSAFER", f"-r{dpi}", "-sDEVICE=pbmraw", f"-sOutputFile={out}"]
-    process = subprocess.Popen(["gs", *options, str(source)])
-    _, status, usage = os.wait4(process.pid, 0)
-    if status:
-        sys.exit("Ghostscript failed")
-    return np.asarray(Image.open(out).convert("L")) / 255.0, usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024
+    # in a small process of its own: a child's peak counts what its parent held
+    measure = (
+        "import resource, subprocess, sys; subprocess.run(sys.argv[1:], check=True);"
+        "u = resource.getrusage(resource.RUSAGE_CHILDREN); print(u.ru_utime + u.ru_stime, u.ru_maxrss / 1024)"
+    )
+    command = [sys.executable, "-S", "-c", measure, "gs", *options, str(source)]
+    seconds, memory = subprocess.run(command, check=True, capture_output=True, text=True).stdout.split()
+    return np.asarray(Image.open(out).convert("L")) / 255.0, float(seconds), float(memory)
 
 
 def tone(page: np.ndarray, layer: Layer, inches: float) -> tuple[float, float]:

@@ -227,13 +227,15 @@ function draw(layer, width, height, view, paint, outline) {
       const at = (k + 0.5) / per / BLOCK - 0.5 - first, low = clamp(Math.floor(at), 0, blocks - 1);
       return [low, Math.min(low + 1, blocks - 1), clamp(at - low, 0, 1)];
     };
-    const X = Array.from({length: wide}, (_, p) => place(x0 + p, perX, bx0, across)), more = new Float64Array(across);
+    const low = new Int32Array(wide), high = new Int32Array(wide), part = new Float64Array(wide), more = new Float64Array(across);
+    for (let p = 0; p < wide; p++) [low[p], high[p], part[p]] = place(x0 + p, perX, bx0, across);
     for (let q = 0; q < tall; q++) {
       const [a, b, f] = place(y0 + q, perY, by0, down);
       for (let i = 0; i < across; i++) more[i] = lack[a * across + i] * (1 - f) + lack[b * across + i] * f;
       for (let p = 0; p < wide; p++) {
         const k = q * wide + p;
-        if (tone[k]) { const [i, j, g] = X[p]; tone[k] = byte(tone[k] + more[i] + (more[j] - more[i]) * g); }
+        const from = more[low[p]];
+        if (tone[k]) tone[k] = byte(tone[k] + from + (more[high[p]] - from) * part[p]);
       }
     }
   };

@@ -154,7 +154,7 @@ class Picture {
     for (let k = 0; k < 16; k++) { tx.push(clamp(I - 1 + (k & 3), 0, w - 1)); ty.push(clamp(J - 1 + (k >> 2), 0, h - 1)); }
     let hidden = false;
     for (const e of this.near(this.edgesIn, I, J, 1)) {
-      const [ax, ay, bx, by, dx, dy, c] = E.subarray(7 * e, 7 * e + 7);
+      const o = 7 * e, ax = E[o], ay = E[o + 1], bx = E[o + 2], by = E[o + 3], dx = E[o + 4], dy = E[o + 5], c = E[o + 6];
       const above = z => z > 0 || (z === 0 && dy < 0), z = dx * cy - dy * cx + c;
       const astride = Math.abs(z) <= (Math.abs(dx) + Math.abs(dy)) / 2;
       for (let k = 0; k < 16; k++) {
@@ -202,8 +202,8 @@ class Picture {
         let least = 1;
         if (bends[k]) {
           const straight = Math.hypot(tx[k] - x, ty[k] - y);
-          for (const [u, v, d, t] of bends[k]) {
-            const detour = d + Math.hypot(u - x, v - y) - straight;
+          for (const bend of bends[k]) {
+            const u = bend[0], v = bend[1], t = bend[3], detour = bend[2] + Math.sqrt((u - x) * (u - x) + (v - y) * (v - y)) - straight;
             if (detour >= least) continue;
             if (!seen.has(t)) seen.set(t, !this.blocked(around, x, y, u, v));
             if (seen.get(t)) least = detour;
