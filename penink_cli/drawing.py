@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from penink_cli.errors import ParameterError
 from penink_cli.formats import strokes as strokes_format
 from penink_cli.model import EdgeList, Floats, GreyImage, Illustration, OutlineChoice, Strokes, Texture
 
@@ -33,19 +34,28 @@ def enlarged(samples: GreyImage, edges: EdgeList | None, size: tuple[int, int], 
 
 def represented(
     photo: GreyImage, threads: int | None, advance: Advance = lambda done: None
-) -> tuple[EdgeList, GreyImage]:
-    """A photograph's edges, and its samples on the smallest grid that serves, as the filters write them."""
+) -> tuple[EdgeList, GreyImage, str]:
+    """A photograph's edges, and its samples on the smallest grid that serves, as the filters write them.
+
+    Also the option of `reduce` that gives these samples.
+    """
     from penink_cli.arrangement import detection
     from penink_cli.formats import edge_list
-    from penink_cli.reconstruction import extraction, grid
+    from penink_cli.reconstruction import extraction, grid, reduction
 
     edges = edge_list.rounded(detection.detect_edges(photo.grey))
     advance(1)
     samples = GreyImage.from_grey(extraction.extract_samples(photo.grey, edges, None), 255)
     advance(1)
-    reduced = grid.choose_grid(samples.grey, edges, grid.MAX_ERROR, photo=photo.grey, threads=threads).samples
+    try:
+        reduced = grid.choose_grid(samples.grey, edges, grid.MAX_ERROR, photo=photo.grey, threads=threads).samples
+        size = "--auto"
+    except ParameterError:  # no grid comes that near to a photo of noise or fine texture: half of it is enough to hatch
+        rows, columns = ((side + 1) // 2 for side in photo.values.shape)
+        reduced = reduction.reduce(samples.grey, edges, columns, rows, photo=photo.grey, threads=threads)
+        size = f"--size {columns}x{rows}"
     advance(1)
-    return edges, GreyImage.from_grey(reduced, 255)
+    return edges, GreyImage.from_grey(reduced, 255), size
 
 
 def outlined(

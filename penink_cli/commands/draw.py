@@ -88,10 +88,10 @@ def draw(
         least = math.floor(OUTLINE_LENGTH * max(rows, columns) + 0.5)
         choice = OutlineChoice(pen or OUTLINE_PEN_PT, pen is not None, OUTLINE_STRENGTH, least)
     with progress(5, "draw", quiet) as advance:
-        edges, reduced = drawing.represented(photo, threads, advance)
+        edges, reduced, grid = drawing.represented(photo, threads, advance)
         if verbose:
             options = click.get_current_context().params
-            for line in _chain(file, output, ending, options, choice, (rows, columns)):
+            for line in _chain(file, output, ending, options, grid, choice, (rows, columns)):
                 click.echo(line, err=True)
         if ending == ".penink":
             own = "." in texture_name or "/" in texture_name
@@ -181,7 +181,7 @@ WRITERS: dict[str, Callable[[str | None, Sequence[Strokes]], None]] = {
 
 
 def _chain(
-    file: str | None, output: str | None, ending: str, options: dict[str, Any],
+    file: str | None, output: str | None, ending: str, options: dict[str, Any], grid: str,
     choice: OutlineChoice | None, shape: tuple[int, int],
 ) -> list[str]:  # fmt: skip
     """The filters whose chain gives the same bytes, as one would type them."""
@@ -204,7 +204,8 @@ def _chain(
         blast += " --ink outlines.jsonl"
         names += " outlines.jsonl"
     lines.append(
-        f"penink extract-samples -e e.json {photo} | penink reduce -e e.json --auto --photo {photo} | "
+        f"penink extract-samples -e e.json {photo} | "
+        f"penink reduce -e e.json {grid} --photo {photo} | "
         f"penink enlarge -e e.json --size {size[0]}x{size[1]} --soften | {blast} -o hatching.jsonl"
     )
     command = {".svg": "to-svg", ".pdf": "to-pdf", ".png": "to-png"}.get(ending, "to-ps")
