@@ -52,7 +52,9 @@ def represented(
         size = "--auto"
     except ParameterError:  # no grid comes that near to a photo of noise or fine texture: half of it is enough to hatch
         rows, columns = ((side + 1) // 2 for side in photo.values.shape)
-        reduced = reduction.reduce(samples.grey, edges, columns, rows, photo=photo.grey, threads=threads)
+        reduced = reduction.reduce(
+            samples.grey, edges, columns, rows, photo=photo.grey, fit="lsq", threads=threads
+        )
         size = f"--size {columns}x{rows}"
     advance(1)
     return edges, GreyImage.from_grey(reduced, 255), size
