@@ -76,6 +76,7 @@ def simplify(planar: Planar, tolerance: float, width: int, height: int) -> None:
     inner = ((vertices > 0) & (vertices < limit)).all(axis=1)
     movable = np.flatnonzero((degree > 1) & inner).astype(np.int32)
     furthest = tolerance / UNIT
+    right, bottom = limit.tolist()
     _planar.settle(
-        planar, movable, around_first, around, run_first, run_last, places, furthest, *limit.tolist(), _SWEEPS
+        planar, movable, around_first, around, run_first, run_last, places, furthest, right, bottom, _SWEEPS
     )

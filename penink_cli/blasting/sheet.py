@@ -290,10 +290,10 @@ def _resample_rows(tone: Floats, n: int) -> Floats:
         lo = np.minimum(at.astype(np.int64), max(0, h - 2))
         f = (at - lo)[:, None]
         return tone[lo] * (1 - f) + tone[np.minimum(lo + 1, h - 1)] * f
-    total: npt.NDArray[np.float64] = np.zeros((h + 1, tone.shape[1]))
+    total = np.zeros((h + 1, tone.shape[1]))
     np.cumsum(tone, axis=0, out=total[1:])
-    at = np.arange(n + 1) * (h / n)
-    lo = np.minimum(at.astype(np.int64), h - 1)
-    f = (at - lo)[:, None]
-    edge = total[lo] * (1 - f) + total[lo + 1] * f
+    bounds = np.arange(n + 1) * (h / n)
+    lo = np.minimum(bounds.astype(np.int64), h - 1)
+    part = (bounds - lo)[:, None]
+    edge = total[lo] * (1 - part) + total[lo + 1] * part
     return np.asarray(np.clip(np.diff(edge, axis=0) * (n / h), 0.0, 1.0), np.float64)
