@@ -24,6 +24,15 @@ def grey_size(width_pt: float, aspect: float) -> tuple[int, int]:
     return width, max(1, math.floor(width * aspect + 0.5))
 
 
+def tone_curve(image: GreyImage, gamma: float) -> Floats:
+    """Ink coverage (h, w) of the image, its grey (0 … 1) raised to gamma."""
+    if gamma == 1.0:
+        return image.tone
+    # by a table, and rounded, so that the power is the same on every machine
+    table = np.array([round(1.0 - (v / image.maxval) ** gamma, 12) for v in range(image.maxval + 1)])
+    return table[image.values]
+
+
 def enlarged(samples: GreyImage, edges: EdgeList | None, size: tuple[int, int], threads: int | None) -> GreyImage:
     """Samples at the size that they are blasted at: half by the reconstruction, doubled by the separable filter."""
     from penink_cli.reconstruction.enlarge import bands
@@ -73,7 +82,6 @@ def blasted(
 ) -> Strokes:  # fmt: skip
     """The hatching of a grey image, as a strokes file holds it."""
     from penink_cli.blasting.blast import blast
-    from penink_cli.commands.blast import tone_curve
 
     rows, columns = grey.values.shape
     return as_written(
@@ -130,7 +138,6 @@ def layer_strokes(
     below, with their ink counted, wherever it has tone itself: so tones add up and no ink is there twice.
     """
     from penink_cli.blasting.blast import blast
-    from penink_cli.commands.blast import tone_curve
 
     height_pt = width_pt * illustration.height / illustration.width
     size = grey_size(width_pt, illustration.height / illustration.width)

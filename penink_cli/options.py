@@ -96,6 +96,18 @@ class Finite(click.ParamType):
         return number
 
 
+class DeviceDpi(click.ParamType):
+    """Dots per inch of the printer, or ``none``."""
+
+    name = "dpi"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float | None:
+        """The resolution, None for ``none``."""
+        if value == "none":
+            return None
+        return Finite(10, 100_000).convert(value, param, ctx)
+
+
 LENGTH = Length()
 SIZE = Size()
 WINDOW = Window()

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
-
 from penink_cli.errors import ParameterError, printable
 from penink_cli.units import parse_length
 
@@ -30,6 +28,16 @@ def paper_size(name: str) -> tuple[float, float]:
             width = height = 0.0
         if 0 < width <= LIMIT and 0 < height <= LIMIT:
             return width, height
+    import difflib
+
     near = difflib.get_close_matches(name.lower(), PAPERS, n=1, cutoff=0.6)
     hint = f"did you mean {near[0]}?" if near else f"known are {', '.join(PAPERS)} and sizes such as 210mmx297mm"
     raise ParameterError(f"no paper {printable(name, 60)!r}; {hint}")
+
+
+def check_sheet(width_pt: float, height_pt: float) -> None:
+    """Refuse sheets of no size, and those that no memory holds."""
+    if not (0.01 <= width_pt <= 144_000 and 0.01 <= height_pt <= 144_000):
+        raise ParameterError(f"{width_pt:g} × {height_pt:g} pt on paper; from 0.01 to 144000 is allowed each way")
+    if width_pt * height_pt > 60 * 40 * 5184 * 4:
+        raise ParameterError(f"{width_pt:g} × {height_pt:g} pt on paper; 9600 square inches are allowed")

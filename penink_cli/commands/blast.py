@@ -7,29 +7,26 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from penink_cli.commands.inputs import only_one_standard_input, read_edges, read_grey
-from penink_cli.errors import ParameterError
 from penink_cli.layer_options import read_layers
-from penink_cli.options import LENGTH, POSITIVE, Finite, edges_option, filter_options, processors, threads_option
+from penink_cli.options import (
+    LENGTH,
+    POSITIVE,
+    DeviceDpi,
+    Finite,
+    edges_option,
+    filter_options,
+    processors,
+    threads_option,
+)
+from penink_cli.papers import check_sheet
 from penink_cli.progress import progress
 from penink_cli.streams import writing
 from penink_cli.texture_options import find_texture, texture_option
 
 if TYPE_CHECKING:
-    from penink_cli.model import Floats, GreyImage, Texture
+    from penink_cli.model import Floats, Texture
 
 RULES = ("best", "strict", "threshold")
-
-
-class DeviceDpi(click.ParamType):
-    """Dots per inch of the printer, or ``none``."""
-
-    name = "dpi"
-
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float | None:
-        """The resolution, None for ``none``."""
-        if value == "none":
-            return None
-        return Finite(10, 100_000).convert(value, param, ctx)
 
 
 @click.command()
@@ -93,7 +90,7 @@ def blast(
     """
     from penink_cli.blasting.blast import TICKS, batches
     from penink_cli.blasting.blast import blast as blast_tone
-    from penink_cli.drawing import joined
+    from penink_cli.drawing import joined, tone_curve
     from penink_cli.formats import strokes as strokes_format
 
     if (width is None) == (dpi is None):
@@ -105,7 +102,7 @@ def blast(
     rows, columns = image.values.shape
     width_pt = width if width is not None else columns / (dpi or 1.0) * 72.0
     height_pt = width_pt * rows / columns
-    check_size(width_pt, height_pt)
+    check_sheet(width_pt, height_pt)
     ink = read_layers(ink_files) if ink_files else []
     tone = tone_curve(image, gamma)
     for line in warnings(tone, texture, pen, device_dpi):
@@ -148,22 +145,3 @@ def warnings(tone: Floats, texture: Texture, pen: float | None, device_dpi: floa
     if part > 0.001:
         lines.append(f"{part:.1%} of the picture is darker than {texture.name} can be ({darkest:.3f})")
     return lines
-
-
-def tone_curve(image: GreyImage, gamma: float) -> Floats:
-    """Ink coverage (h, w) of the image, its grey (0 … 1) raised to gamma."""
-    if gamma == 1.0:
-        return image.tone
-    import numpy as np
-
-    # by a table, and rounded, so that the power is the same on every machine
-    table = np.array([round(1.0 - (v / image.maxval) ** gamma, 12) for v in range(image.maxval + 1)])
-    return table[image.values]
-
-
-def check_size(width_pt: float, height_pt: float) -> None:
-    """Refuse sheets of no size, and those that no memory holds."""
-    if not (0.01 <= width_pt <= 144_000 and 0.01 <= height_pt <= 144_000):
-        raise ParameterError(f"{width_pt:g} × {height_pt:g} pt on paper; from 0.01 to 144000 is allowed each way")
-    if width_pt * height_pt > 60 * 40 * 5184 * 4:
-        raise ParameterError(f"{width_pt:g} × {height_pt:g} pt on paper; 9600 square inches are allowed")

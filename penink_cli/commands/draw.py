@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from penink_cli.commands.blast import DeviceDpi, check_size
 from penink_cli.commands.inputs import read_photo
 from penink_cli.errors import printable
-from penink_cli.options import LENGTH, Finite, filter_options, processors, threads_option, verbose_option
+from penink_cli.options import LENGTH, DeviceDpi, Finite, filter_options, processors, threads_option, verbose_option
+from penink_cli.papers import check_sheet
 from penink_cli.streams import writing
 from penink_cli.texture_options import find_texture, texture_option
 
@@ -82,7 +82,7 @@ def draw(
     photo = read_photo(file, max_pixels)
     rows, columns = photo.values.shape
     height = width * rows / columns
-    check_size(width, height)
+    check_sheet(width, height)
     choice = None
     if outlines:
         least = math.floor(OUTLINE_LENGTH * max(rows, columns) + 0.5)

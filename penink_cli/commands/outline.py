@@ -72,15 +72,15 @@ def outline(
     penink outline --width 4in --min-strength 0.2 photo.edges.json > outlines.strokes.jsonl
     penink to-ps hatching.strokes.jsonl outlines.strokes.jsonl -o photo.ps
     """
-    from penink_cli.commands.blast import check_size
     from penink_cli.drawing import outline_strokes
     from penink_cli.formats import strokes
     from penink_cli.model import OutlineChoice
+    from penink_cli.papers import check_sheet
 
     edges = read_edges(file or "-")
     assert edges is not None  # which it is only where no file is named
     height = width * edges.height / edges.width
-    check_size(width, height)
+    check_sheet(width, height)
     choice = OutlineChoice(
         pen_pt=weight if pen is None else pen,
         even=pen is not None,

@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING
 
 import click
 
-from penink_cli.commands.blast import DeviceDpi, check_size
 from penink_cli.commands.inputs import read_illustration
 from penink_cli.errors import ParameterError, printable
-from penink_cli.options import LENGTH, POSITIVE, filter_options, processors, threads_option
+from penink_cli.options import LENGTH, POSITIVE, DeviceDpi, filter_options, processors, threads_option
+from penink_cli.papers import check_sheet
 from penink_cli.streams import writing
 
 if TYPE_CHECKING:
@@ -64,7 +64,7 @@ def render(
     illustration = read_illustration(file, max_pixels)
     width_pt = width if width is not None else illustration.width * (scale or 1.0)
     height_pt = width_pt * illustration.height / illustration.width
-    check_size(width_pt, height_pt)
+    check_sheet(width_pt, height_pt)
     which = range(len(illustration.layers)) if chosen is None else [_number(illustration, chosen)]
     with progress(len(illustration.layers), "render", quiet) as advance:
         layers = layer_strokes(
