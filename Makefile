@@ -49,7 +49,7 @@ figures: $(INSTALLED) needs
 	@cat samples/out/table1.md
 
 test: $(INSTALLED) needs needs-test
-	PATH="$(BIN):$$PATH" $(BIN)/python -m pytest $(TESTS)
+	PATH="$(BIN):$$PATH" $(BIN)/python -m pytest -n auto --dist worksteal $(TESTS)
 
 lint: $(INSTALLED)
 	$(BIN)/ruff check .

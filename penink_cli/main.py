@@ -37,7 +37,7 @@ SUBCOMMANDS = {
     "draw": ("draw", "Turn a photo into a pen-and-ink drawing, the whole chain in one call."),
     "texture": ("texture", "List, show, make and import stroke textures."),
     "pack": ("pack", "Pack an illustration and its members in one small file."),
-    "to-html": ("to_html", "Write an illustration as a web page that draws itself."),
+    "to-html": ("to_html", "Write an illustration as one web page that draws itself."),
     "to-ps": ("to_ps", "Write strokes as PostScript."),
     "to-svg": ("to_svg", "Write strokes as SVG, for drawing programs, the web and pen plotters."),
     "to-pdf": ("to_pdf", "Write strokes as a PDF page of vector paths."),

@@ -45,25 +45,18 @@ PENINK_FORCE:
 %.to-pdf.options: PENINK_FORCE
 	$(call penink-note,TO_PDF)
 
-penink-detect  = $(PENINK) detect-edges $(call penink-options,DETECT) -o $@ $<
-penink-extract = $(PENINK) extract-samples $(call penink-options,EXTRACT) -e $*.edges.json -o $@ $<
+# The stages that see the photograph, once for each of its endings.
+define penink-photo-rules
+%.edges.json: %.$(1) %.detect.options
+	$$(PENINK) detect-edges $$(call penink-options,DETECT) -o $$@ $$<
 
-%.edges.json: %.png %.detect.options
-	$(penink-detect)
-%.edges.json: %.jpg %.detect.options
-	$(penink-detect)
-%.edges.json: %.pgm %.detect.options
-	$(penink-detect)
+%.samples.pgm: %.$(1) %.edges.json %.extract.options
+	$$(PENINK) extract-samples $$(call penink-options,EXTRACT) -e $$*.edges.json -o $$@ $$<
 
-%.samples.pgm: %.png %.edges.json %.extract.options
-	$(penink-extract)
-%.samples.pgm: %.jpg %.edges.json %.extract.options
-	$(penink-extract)
-%.samples.pgm: %.pgm %.edges.json %.extract.options
-	$(penink-extract)
-
-%.reduced.pgm: %.samples.pgm %.edges.json %.reduce.options
-	$(PENINK) reduce $(call penink-options,REDUCE) -e $*.edges.json -o $@ $<
+%.reduced.pgm: %.samples.pgm %.$(1) %.edges.json %.reduce.options
+	$$(PENINK) reduce $$(call penink-options,REDUCE) -e $$*.edges.json --photo $$*.$(1) -o $$@ $$<
+endef
+$(foreach ending,png jpg pgm,$(eval $(call penink-photo-rules,$(ending))))
 
 %.grey.pgm: %.reduced.pgm %.edges.json %.enlarge.options
 	$(PENINK) enlarge $(call penink-options,ENLARGE) -e $*.edges.json -o $@ $<
