@@ -97,7 +97,7 @@ class Coder:
     @property
     def overrun(self) -> bool:
         """Whether more bytes were asked for than there are: the data is truncated."""
-        return self._at > self._size + OVERRUN
+        return self._exhausted()
 
     @property
     def rest(self) -> int:
@@ -111,6 +111,11 @@ class Coder:
         for k in range(8):
             found = found * 2 + self._code_bit((END >> (7 - k)) & 1, 2048)
         return found == END
+
+    @cython.cfunc
+    @cython.inline
+    def _exhausted(self) -> cython.bint:
+        return self._at > self._size + OVERRUN
 
     @cython.cfunc
     @cython.inline
@@ -234,7 +239,8 @@ class Coder:
         """Samples row by row, each as its difference from what its neighbours let expect.
 
         values: (h, w), written from or read into. A number read that would leave 0 … maxval is
-        wrapped into it, so that any bytes at all give samples.
+        wrapped into it, so that any bytes at all give samples. Reading stops where the bytes
+        overrun: a few of them may announce millions of samples.
         """
         h: cython.Py_ssize_t = values.shape[0]
         w: cython.Py_ssize_t = values.shape[1]
@@ -259,6 +265,8 @@ class Coder:
         around: cython.int
         for i in range(h):
             for j in range(w):
+                if self._exhausted():
+                    return
                 west = values[i, j - 1] if j else (values[i - 1, j] if i else maxval)
                 north = values[i - 1, j] if i else west
                 north_west = values[i - 1, j - 1] if i and j else north
@@ -324,7 +332,10 @@ class Coder:
         return 4 if value > 3 else 3
 
     def text(self, values: cython.uchar[::1]) -> None:
-        """Bytes of text, each predicted from the three before it; written from or read into values (n,)."""
+        """Bytes of text, each predicted from the three before it; written from or read into values (n,).
+
+        Reading stops where the bytes overrun, as in `samples`.
+        """
         n: cython.Py_ssize_t = values.shape[0]
         i: cython.Py_ssize_t
         one: cython.int = 0
@@ -336,6 +347,8 @@ class Coder:
         byte: cython.int
         bits: cython.int
         for i in range(n):
+            if self._exhausted():
+                return
             byte = values[i]
             bits = 0
             for half in range(2):  # 15 decisions for each half of a byte, so that NODES suffice

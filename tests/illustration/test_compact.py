@@ -11,6 +11,7 @@ from penink_cli.arrangement import quantisation, validity
 from penink_cli.errors import FormatError, LimitError, PeninkError
 from penink_cli.formats import _compact, compact
 from penink_cli.model import EdgeList, GreyImage
+from tests.conftest import ROOT
 from tests.illustration.conftest import grey, square
 
 
@@ -122,6 +123,22 @@ def test_a_few_bytes_cannot_announce_more_than_is_allowed():
         compact.edges_from(compact.EDGES + b"\x10\x10\x10\x10\xff\xff\x7f\x00" + bytes(20))
     with pytest.raises(LimitError):
         compact.text_from(compact.TEXT + b"\xff\xff\xff\x7f" + bytes(20))
+
+
+def test_reading_stops_where_the_bytes_end():
+    """Decoding what is announced after that would take minutes for sixteen million of either."""
+    text = np.full(1 << 24, 7, np.uint8)
+    coder = _compact.Coder(b"few bytes")
+    coder.text(text)
+    assert coder.overrun and (text[1 << 16 :] == 7).all()
+    for shape in ((1 << 12, 1 << 12), (1, 1 << 24)):
+        values = np.full(shape, 7, np.int32)
+        coder = _compact.Coder(b"few bytes")
+        coder.samples(values, 255)
+        assert coder.overrun and (values.ravel()[1 << 16 :] == 7).all()
+    found = (ROOT / "tests/data/found/compact/text-of-232314-bytes-in-7").read_bytes()
+    with pytest.raises(FormatError, match=r"^truncated or damaged$"):
+        compact.text_from(found)
 
 
 @pytest.mark.parametrize(
