@@ -26,6 +26,10 @@ def environment(**changes: str) -> dict[str, str]:
     return {**os.environ, "PYTHONPATH": str(ROOT), **changes}
 
 
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption("--rewrite-golden", action="store_true", help="write tests/golden anew from what is found")
+
+
 @pytest.fixture(scope="session")
 def penink() -> Run:
     """Run ``penink ARGUMENTS`` as a process: penink("reduce", "--factor", "4", input=bytes)."""
