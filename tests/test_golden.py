@@ -7,6 +7,7 @@ before committing it. Grey images are kept as plain PGM, one row of pixels a lin
 
 from __future__ import annotations
 
+import os
 import re
 
 import numpy as np
@@ -66,6 +67,7 @@ def test_a_stage_writes_its_golden_file(name, penink, request):
     found = readable(done.stdout)
     assert len(found) < 20_000, "too long to be read"
     if request.config.getoption("--rewrite-golden"):
+        assert "PYTEST_XDIST_WORKER" not in os.environ, "stages are rewritten in their order: without -n"
         (GOLDEN / name).write_bytes(found)
     compare(name, found)
 
