@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import PurePath
 from typing import Any
 
 import click
@@ -14,10 +13,10 @@ from penink_cli.streams import writing
 
 @click.command(name="to-html")
 @filter_options
-@click.option("--title", help="Of the page.  [default: the file's name]")
+@click.option("--title", default="Illustration", show_default=True, help="Of the page.")
 @click.option("--readable", is_flag=True, help="Keep the program's comments and layout.")
 def to_html(
-    file: str | None, output: str | None, max_pixels: int, title: str | None, readable: bool, **_: Any
+    file: str | None, output: str | None, max_pixels: int, title: str, readable: bool, **_: Any
 ) -> None:
     """Write an illustration as one web page that draws itself.
 
@@ -31,8 +30,6 @@ def to_html(
     from penink_cli.selfdrawing import html
 
     illustration = read_illustration(file, max_pixels)
-    if title is None:
-        title = PurePath(file).name.split(".")[0] if file not in (None, "-") and file else "Illustration"
     page = html.write(illustration, title, readable)
     with writing(output) as out:
         out.write(page)

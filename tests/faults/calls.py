@@ -44,6 +44,8 @@ CALLS = {
     "render": Call("photo.illustration.json", ("--scale", "1")),
     "draw": Call("photo.png", ("--width", "0.3in", "--texture", "crosshatch")),
     "pack": Call("photo.illustration.json"),
+    "to-html": Call("photo.illustration.json"),
+    "texture": Call(None, ("make", "brick", "--seed", "1")),
 }
 
 
