@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import os
 from collections.abc import Callable
 from typing import Any, TypeVar
 
@@ -179,4 +178,6 @@ verbose_option = click.option(
 
 def processors() -> int:
     """Processors this process may run on: the default of --threads."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    from penink_cli.reconstruction import threads
+
+    return threads.count(None)

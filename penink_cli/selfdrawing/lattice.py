@@ -35,8 +35,3 @@ def on_lattice(edges: EdgeList, w: int, h: int) -> tuple[Ints, Ints, Floats | No
     out = ((vertices < 0) | (vertices >= scale))[ends]
     keep = ~(out[:, 0] & out[:, 1]).any(axis=1)
     return vertices, ends[keep], None if moved.strength is None else moved.strength[keep]
-
-
-def in_samples(vertices: Ints) -> Floats:
-    """The lattice's vertices in sample units, the samples at whole numbers."""
-    return (vertices + 0.5) / PARTS - 0.5
