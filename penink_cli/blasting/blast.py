@@ -9,6 +9,7 @@ import numpy as np
 
 from penink_cli.blasting import hatching, tile
 from penink_cli.blasting.sheet import Sheet
+from penink_cli.blasting.threshold import blast_by_threshold
 from penink_cli.errors import ParameterError
 from penink_cli.model import EdgeList, Floats, Strokes, Texture
 
@@ -40,7 +41,8 @@ def blast(
     pen_pt: the one width of all strokes; by default the texture's, varied a little as a hand does.
     device_dpi: of the printer, which paints every dot that a stroke touches; None where nothing is gained.
     rule: "best", true tone in a closed loop; "strict", the paper's, no stroke that makes any place too dark;
-        "threshold", each stroke wherever the tone exceeds the one at which the texture has it enter.
+        "threshold", each stroke wherever the tone exceeds the one at which the texture has it enter: what an
+        illustration that draws itself does on a device. It knows no seed.
     outlines: strokes drawn already, whose ink counts; they are not among those returned.
     tick: called now and then, `TICKS` times at the most.
 
@@ -49,6 +51,10 @@ def blast(
     """
     if rule not in RULES:
         raise ParameterError(f"rule {rule!r}: known are {', '.join(RULES)}")
+    if rule == "threshold":
+        strokes = blast_by_threshold(tone, width_pt, height_pt, edges, texture, pen_pt, device_dpi, outlines)
+        tick()
+        return replace(strokes, texture=texture.name, seed=seed)
     gain = 72.0 / device_dpi if device_dpi else 0.0
     sheet = Sheet(tone, width_pt, height_pt, gain, threads or 1)
     if outlines is not None:
@@ -57,10 +63,7 @@ def blast(
         strokes = hatching.hatch_sheet(sheet, texture.layers, edges, gain, seed, pen_pt, tick)
     else:
         enters = tile.thresholds(texture, gain)
-        if rule == "threshold":
-            parts = tile.draw_by_threshold(sheet, texture, enters, seed, pen_pt)
-        else:
-            parts = tile.blast_tile(sheet, texture, edges, enters, seed, rule == "strict", pen_pt, tick)
+        parts = tile.blast_tile(sheet, texture, edges, enters, seed, rule == "strict", pen_pt, tick)
         strokes = hatching.join(parts, width_pt, height_pt)
         if rule == "best" and pen_pt is None and len(strokes):
             strokes = hatching.press(sheet, strokes, seed)

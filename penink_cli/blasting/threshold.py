@@ -13,9 +13,10 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from penink_cli.blasting import _threshold
-from penink_cli.model import Floats, Ints
-from penink_cli.textures.threshold import Screen, ThresholdTable
+from penink_cli.blasting import _threshold, curves
+from penink_cli.blasting.sheet import resample
+from penink_cli.model import EdgeList, Floats, Ints, Strokes, Texture
+from penink_cli.textures.threshold import WIDENED_PT, Screen, ThresholdTable, table
 
 BLOCK_PT = 9.0
 GAP, SHORT, DEEP = 3, 3.0, 24.0
@@ -51,23 +52,137 @@ def direction(angle: float) -> tuple[float, float]:
     return round(math.cos(math.radians(angle)), 12), round(math.sin(math.radians(angle)), 12)
 
 
+#: The finest pen, in device pixels with its gain, that is painted as wide as it should be: what is left of a thinner
+#: one when the gain is taken off is under one pixel, and that is painted without gain.
+LEAST_PIXELS = 2.45
+
+
+def blast_by_threshold(
+    tone: Floats, width_pt: float, height_pt: float, edges: EdgeList | None, texture: Texture, pen_pt: float | None,
+    device_dpi: float | None, outlines: Strokes | None = None,
+) -> Strokes:  # fmt: skip
+    """Strokes for a sheet of width_pt × height_pt, as `blast` describes them.
+
+    tone: (h, w) 0 … 1. A device asks for one value a unit; finer ones are taken as they are, up to four.
+    """
+    sizes = table(texture, pen_pt)
+    gain = 72.0 / device_dpi if device_dpi else 0.0
+    unit = _unit(sizes, pen_pt, gain)
+    n, m = grid(texture, pen_pt, device_dpi, width_pt, height_pt)
+    rows, columns = tone.shape
+    if rows < m or columns < n or rows > 4 * m or columns > 4 * n:
+        tone = resample(tone, m, n)
+    ink = np.floor(np.clip(tone, 0.0, 1.0) * 255 + 0.5).astype(np.uint8)
+    squares = max(1, n // 4), max(1, m // 4)
+    ends = np.zeros((0, 4))
+    if edges is not None and len(edges.edges):
+        ends = (edges.scaled(*squares) - 0.5)[edges.edges].reshape(-1, 4)
+    bare = None if outlines is None else _left_bare(outlines, width_pt / unit, height_pt / unit, unit)
+    parts = []
+    for screen, (points, stops) in zip(
+        sizes.screens, draw(ink, ends, squares, sizes, width_pt, height_pt, unit, bare=bare), strict=True
+    ):
+        c, s = direction(screen.angle)
+        pen = pen_pt or max(sizes.pen_pt * unit - gain * (abs(c) + abs(s)), 0.02)
+        parts.append(_smooth(*_within(points, stops, width_pt, height_pt), pen))
+    control = np.concatenate([points for points, _, _ in parts])
+    counts = np.concatenate([count for _, count, _ in parts])
+    return Strokes(width_pt, height_pt, control, curves.starts(counts), np.concatenate([w for _, _, w in parts]))
+
+
+def grid(
+    texture: Texture, pen_pt: float | None, device_dpi: float | None, width_pt: float, height_pt: float
+) -> tuple[int, int]:
+    """How many values of tone a device wants, across and down: one a unit, which is about a point."""
+    unit = _unit(table(texture, pen_pt), pen_pt, 72.0 / device_dpi if device_dpi else 0.0)
+    return max(1, math.floor(width_pt / unit + 0.5)), max(1, math.floor(height_pt / unit + 0.5))
+
+
+def _unit(sizes: ThresholdTable, pen_pt: float | None, gain_pt: float) -> float:
+    """The magnification of pen and tile, in points, for a pen if one is given, on a device that widens it so."""
+    if pen_pt is not None:  # the table takes a printer of 600 dpi for granted
+        return (pen_pt + gain_pt * WIDENED_PT * 600 / 72) / sizes.pen_pt
+    return max(sizes.magnification, LEAST_PIXELS * gain_pt / sizes.pen_pt)
+
+
+def _within(points: Floats, stops: Ints, width: float, height: float) -> tuple[Floats, Ints]:
+    """The parts of polylines that lie on the page: a device clips to it."""
+    begin = np.setdiff1d(np.arange(len(points)), stops - 1)
+    a, step = points[begin], points[np.minimum(begin + 1, len(points) - 1)] - points[begin]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        cross = np.stack([-a / step, ((width, height) - a) / step])
+    # along an axis on which a segment does not move it is inside for good, or never
+    still = np.where((a >= 0) & (a <= (width, height)), np.inf, -np.inf)
+    enters = np.where(step == 0, -still, np.minimum(*cross)).max(axis=1).clip(0.0, None)
+    leaves = np.where(step == 0, still, np.maximum(*cross)).min(axis=1).clip(None, 1.0)
+    # a dot has no length to be inside with
+    on = (leaves > enters) | ((step == 0).all(axis=1) & (still > 0).all(axis=1))
+    enters, leaves = np.where(on, enters, 0.0), np.where(on, leaves, 1.0)
+    follows = np.zeros(len(begin), bool)
+    follows[1:] = (begin[1:] == begin[:-1] + 1) & on[:-1] & (leaves[:-1] >= 1) & (enters[1:] <= 0)
+    fresh = on & ~follows
+    begin, a, step, enters, leaves, fresh = (v[on] for v in (begin, a, step, enters, leaves, fresh[: len(on)]))
+    # each segment gives its end, the first of a run its start as well
+    out = np.stack([a + enters[:, None] * step, a + leaves[:, None] * step], axis=1)
+    keep = np.column_stack([fresh, np.ones(len(fresh), bool)])
+    count = np.cumsum(keep.sum(axis=1))
+    last = np.append(fresh[1:], True) if len(fresh) else fresh
+    return out[keep], count[last]
+
+
+def _smooth(points: Floats, stops: Ints, pen: float) -> tuple[Floats, Ints, Floats]:
+    """Control points, how many each stroke has, and widths, of smooth curves through polylines that end at stops."""
+    if len(stops) == 0:
+        return np.zeros((0, 2)), np.zeros(0, np.int64), np.zeros(0)
+    start = np.concatenate([[0], stops[:-1]])
+    at = np.arange(len(points))
+    first, last = np.zeros(len(points), bool), np.zeros(len(points), bool)
+    first[start], last[stops - 1] = True, True
+    before = points - points[np.where(first, at, at - 1)]
+    after = points[np.where(last, at, (at + 1) % len(at))] - points
+    near, far = np.sqrt((before**2).sum(axis=1)), np.sqrt((after**2).sum(axis=1))
+    across = before + after
+    along = across / np.maximum(np.sqrt((across**2).sum(axis=1)), 1e-9)[:, None]
+    control = np.stack([points - along * near[:, None] / 3, points, points + along * far[:, None] / 3], axis=1)
+    # a chain begins and ends with a point itself
+    keep = np.ones((len(points), 3), bool)
+    keep[first, 0], keep[last, 2] = False, False
+    return control[keep], 3 * (stops - start) - 2, np.full(len(stops), pen)
+
+
+def _left_bare(ink: Strokes, w: float, h: float, unit: float) -> Floats:
+    """What strokes that are there already leave of each block, on a page of w × h units."""
+    bare = np.ones((math.ceil(h / BLOCK_PT), math.ceil(w / BLOCK_PT)))
+    lines = curves.sample(ink.points, ink.first, curves.pieces_of(ink.points, ink.first, 2 * unit))
+    points = lines.points / unit
+    begin = np.setdiff1d(np.arange(len(points)), lines.first[1:] - 1)
+    middle = (points[begin] + points[np.minimum(begin + 1, len(points) - 1)]) / 2
+    step = points[np.minimum(begin + 1, len(points) - 1)] - points[begin]
+    owner = np.searchsorted(lines.first, begin, side="right") - 1
+    covered = np.sqrt((step**2).sum(axis=1)) * ink.widths[owner] / unit / BLOCK_PT**2
+    inside = (middle >= 0).all(axis=1) & (middle[:, 0] < w) & (middle[:, 1] < h)
+    at = (middle[inside] / BLOCK_PT).astype(np.int64)
+    np.multiply.at(bare, (at[:, 1], at[:, 0]), np.maximum(0.0, 1.0 - covered[inside]))
+    return bare
+
+
 def draw(
     tone: Bytes, ends: Floats, samples: tuple[int, int], table: ThresholdTable, width: float, height: float,
-    magnification: float = 1.0, feedback: int = 1,
+    unit: float, feedback: int = 1, bare: Floats | None = None,
 ) -> list[tuple[Floats, Ints]]:  # fmt: skip
     """For each screen its runs on a page of width × height points: points (p, 2) of polylines, and where each ends.
 
-    tone: (m, n) ink in 255ths on the grid that the reconstruction fills. ends: (e, 4) the edges, in units of
-    the samples (w, h). magnification: of pen and tile, for devices too coarse for the table's pen.
+    tone: (m, n) ink in 255ths on a grid that fills the page. ends: (e, 4) the edges, on a grid of samples (w, h)
+    whose first lies at 0, 0. unit: magnification of pen and tile. bare: what earlier ink leaves of each block.
     """
-    magnification *= table.magnification
-    w, h = width / magnification, height / magnification
+    before = bare
+    w, h = width / unit, height / unit
     columns, rows = samples[0] + 1, samples[1] + 1
     first, items = buckets(ends, columns, rows)
     ax, ay, bx, by = (np.ascontiguousarray(ends[:, i], np.float64) if len(ends) else np.zeros(1) for i in range(4))
     wanted = tone
     for left in range(feedback, -1, -1):
-        bare = np.ones((math.ceil(h / BLOCK_PT), math.ceil(w / BLOCK_PT)))
+        bare = np.ones((math.ceil(h / BLOCK_PT), math.ceil(w / BLOCK_PT))) if before is None else before.copy()
         tall = np.minimum(BLOCK_PT, h - BLOCK_PT * np.arange(bare.shape[0]))
         wide = np.minimum(BLOCK_PT, w - BLOCK_PT * np.arange(bare.shape[1]))
         area = np.outer(tall, wide)
@@ -89,7 +204,7 @@ def draw(
                     break
                 room *= 4
             bare *= 1 - np.interp(ink / area, screen.lengths, screen.covers)
-            parts.append((points[: count[0]] * magnification, ends_of[: count[1]]))
+            parts.append((points[: count[0]] * unit, ends_of[: count[1]]))
         if left:
             wanted = corrected(tone, bare, area, w, h)
     return parts

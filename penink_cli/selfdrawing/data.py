@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from penink_cli.errors import LimitError
-from penink_cli.model import Floats, Illustration, Ints, Layer, OutlineChoice
+from penink_cli.model import EdgeList, Floats, GreyImage, Illustration, Ints, Layer, OutlineChoice
 from penink_cli.selfdrawing.lattice import PARTS, on_lattice
 from penink_cli.textures import threshold
 
@@ -92,6 +92,19 @@ def ink_levels(layer: Layer) -> Ints:
 def ink_bytes(levels: Ints, count: int) -> Ints:
     """The same in 255ths, as the devices compute them."""
     return np.floor(levels * (255.0 / (count - 1)) + 0.5).astype(np.int64)
+
+
+def as_sent(layer: Layer) -> tuple[GreyImage, EdgeList | None]:
+    """A layer's samples and edges as a device has them, the edges in 32nds of a sample."""
+    h, w = layer.samples.values.shape
+    ink = ink_bytes(ink_levels(layer), layer.levels)
+    samples = GreyImage((255 - ink).astype(np.uint8), 255)
+    if layer.edges is None or not len(layer.edges.edges):
+        return samples, None
+    vertices, ends, strength = on_lattice(layer.edges, w, h)
+    across, down = 2 * PARTS * w, 2 * PARTS * h
+    inside = np.clip(2 * vertices + 1, 0, (across, down)).astype(np.float64)
+    return samples, EdgeList(across, down, inside, ends, strength)
 
 
 def samples_bytes(ink: Ints, levels: int) -> bytes:

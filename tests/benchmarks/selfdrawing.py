@@ -22,7 +22,6 @@ from penink_cli.reconstruction.enlarge import enlarge
 from penink_cli.selfdrawing import data, html, postscript
 from penink_cli.texture_options import find_texture
 from tests.selfdrawing.chromium import Page
-from tests.selfdrawing.pictures import device_edges
 
 Image.MAX_IMAGE_PIXELS = None
 
@@ -60,10 +59,9 @@ def tone(page: np.ndarray, layer: Layer, inches: float) -> tuple[float, float]:
     """RMS and bias in percent (+ is too light), low-passed by 1/16 inch."""
     n = round(inches * 100)
     m = round(n * page.shape[0] / page.shape[1])
-    h, w = layer.samples.values.shape
-    ink = data.ink_bytes(data.ink_levels(layer), layer.levels)
-    grey = GreyImage((255 - ink).astype(np.uint8), 255)
-    target = enlarge(grey, device_edges(layer), max(n, w), max(m, h)).values / 255.0
+    samples, edges = data.as_sent(layer)
+    h, w = samples.values.shape
+    target = enlarge(samples, edges, max(n, w), max(m, h)).values / 255.0
     small = [
         np.asarray(Image.fromarray(a.astype(np.float32)).resize((n, m), Image.Resampling.BOX), float)
         for a in (page, target)
@@ -80,7 +78,7 @@ def main() -> None:
             p = picture("camera", n, sigma=1.6, high=high, low=0.12, tolerance=1.0, min_length=18.0)
             eps = postscript.write(p)
             page = html.write(p, "camera")
-            edges = len(device_edges(p.layers[0]).edges)
+            edges = len(data.as_sent(p.layers[0])[1].edges)
             print(f"{n} x {n}, {edges} edges: EPS {len(eps)} bytes, page {len(page)} bytes")
         print("inches  dpi  RMS %  bias %  CPU s  s/sq in  MB")
         for photo in ("camera", "coins", "moon"):

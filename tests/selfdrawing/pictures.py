@@ -10,7 +10,8 @@ import numpy as np
 from PIL import Image
 
 from penink_cli.model import EdgeList, GreyImage, HatchLayer, Illustration, Layer, OutlineChoice, Strokes, Texture
-from penink_cli.selfdrawing import data, lattice
+from penink_cli.reconstruction.enlarge import enlarge
+from penink_cli.selfdrawing import data
 
 CROSSHATCH = Texture(
     "crosshatch", Strokes(144, 144), np.zeros(0), layers=(HatchLayer(-45, 0, 0.5), HatchLayer(45, 0.46, 0.99))
@@ -33,20 +34,10 @@ def illustration(n: int = 40, inches: float = 1.5, texture: Texture = CROSSHATCH
     return Illustration(72 * inches, 72 * inches, (layer,))
 
 
-def device_edges(layer: Layer) -> EdgeList:
-    """The edges as the devices have them, in 32nds of a sample."""
-    h, w = layer.samples.values.shape
-    vertices, ends, _ = lattice.on_lattice(layer.edges, w, h)
-    return EdgeList(32 * w, 32 * h, np.clip(2 * vertices + 1, 0, [32 * w, 32 * h]).astype(float), ends)
-
-
 def expected_tone(layer: Layer, n: int, m: int) -> np.ndarray:
     """Ink in 255ths (m, n) as `enlarge` has it, not rounded to whole numbers."""
-    from penink_cli.reconstruction.enlarge import enlarge
-
-    ink = data.ink_bytes(data.ink_levels(layer), layer.levels)
-    grey = GreyImage((255 - ink).astype(np.uint8), 255)
-    return 255 - enlarge(grey, device_edges(layer), n, m, maxval=65535).values / 257.0
+    samples, edges = data.as_sent(layer)
+    return 255 - enlarge(samples, edges, n, m, maxval=65535).values / 257.0
 
 
 def ghostscript(program: bytes, *options: str) -> bytes:
