@@ -63,7 +63,7 @@ def hatch_sheet(
     borders = walls.build(edges, sheet, max(pen_pt or layer.pen_pt for layer in layers))
     pens = [pen_pt or layer.pen_pt for layer in layers]
     weight = sheet.low_pass(np.ones_like(sheet.tone))
-    along = thin.strokes_along(sheet, min(pens), min(pens) + gain_pt * 1.27)
+    along = thin.strokes_along(sheet, min(pens), min(pens) + gain_pt * 1.27, pen_pt is not None)
     draw_first(sheet, along)
     there = np.minimum(sheet.low_pass(sheet.ink) / weight, np.float32(0.99))
     wanted: Cells = sheet.tone.copy()

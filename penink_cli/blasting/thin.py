@@ -16,15 +16,18 @@ from penink_cli.blasting.sheet import Cells, Sheet
 from penink_cli.model import Floats, Ints, Strokes
 
 #: How much darker a crest must be than what lies beside it on either side, on its own and on the mean of a line.
-CONTRAST, MEAN_CONTRAST = 0.09, 0.15
+CONTRAST, MEAN_CONTRAST = 0.05, 0.09
 #: Beside means so many cells away.
 BESIDE = 3.0
 #: What lies beside may be so dark at the most: in the dark a line more is not seen.
 DARKEST_GROUND = 0.6
-SHORTEST_PT = 9.0
+SHORTEST_PT = 6.0
 KNOT_PT = 7.0
 #: So many strokes lie side by side along one thing at the most.
 MOST = 4
+#: What is fainter than a line of the pen is drawn with a finer one, of so much of its width at the least,
+#: and no finer than the device's pixels bear.
+FINEST = 0.55
 
 
 def crests(tone: Cells) -> tuple[npt.NDArray[np.bool_], Floats, Floats, Floats]:
@@ -130,13 +133,17 @@ def breadth(tone: Floats, where: Ints, nx: Floats, ny: Floats, cell_pt: float) -
     return float(np.mean(np.maximum(across - ground, 0.0).sum(axis=0) * 0.5 / np.maximum(1.0 - ground, 0.2))) * cell_pt
 
 
-def strokes_along(sheet: Sheet, pen_pt: float, painted_pt: float) -> Strokes:
-    """Strokes along each thin dark thing of the sheet: one, or several side by side where it is broader than a pen."""
+def strokes_along(sheet: Sheet, pen_pt: float, painted_pt: float, fixed: bool) -> Strokes:
+    """Strokes along each thin dark thing of the sheet: one, or several side by side where it is broader than a pen.
+
+    pen_pt: width of the strokes, the greatest unless `fixed`. painted_pt: how wide the device paints one.
+    """
     mask, contrast, nx, ny = crests(sheet.tone)
     tone = sheet.tone.astype(np.float64)
     cell = np.array([sheet.width / sheet.columns, sheet.height / sheet.rows])
     parts: list[Floats] = []
     sizes: list[int] = []
+    pens: list[float] = []
     for line in follow(mask, contrast, nx, ny):
         where = np.array(line)
         if len(line) * float(cell.min()) < 0.8 * SHORTEST_PT:
@@ -157,6 +164,7 @@ def strokes_along(sheet: Sheet, pen_pt: float, painted_pt: float) -> Strokes:
         slope = np.gradient(knots, axis=0) / 3 if n > 1 else np.repeat(knots[1:] - knots[:1], 2, axis=0) / 3
         broad = breadth(tone, where, nx, ny, float(cell.min()))
         side_by_side = int(min(max(round(broad / (1.1 * painted_pt)), 1), MOST))
+        pen = pen_pt if fixed else min(max(pen_pt * broad / painted_pt, FINEST * pen_pt, 1.5 * sheet.gain_pt), pen_pt)
         length = np.maximum(np.sqrt((slope * slope).sum(axis=1)), 1e-9)[:, None]
         normal = np.column_stack([-slope[:, 1], slope[:, 0]]) / length
         for k in range(side_by_side):
@@ -164,8 +172,9 @@ def strokes_along(sheet: Sheet, pen_pt: float, painted_pt: float) -> Strokes:
             inner = np.stack([moved[:-1] + slope[:-1], moved[1:] - slope[1:], moved[1:]], axis=1).reshape(-1, 2)
             parts.append(np.concatenate([moved[:1], inner]))
             sizes.append(3 * n + 1)
+            pens.append(pen)
     first: Ints = curves.starts(np.array(sizes, np.int64))
     points = np.concatenate(parts) if parts else np.zeros((0, 2))
     d = min(0.62 * pen_pt, 0.25 * sheet.width, 0.25 * sheet.height)
     points = np.clip(points, d, (sheet.width - d, sheet.height - d))
-    return Strokes(sheet.width, sheet.height, points, first, np.full(len(sizes), pen_pt))
+    return Strokes(sheet.width, sheet.height, points, first, np.array(pens, np.float64))
