@@ -1,7 +1,7 @@
-"""Storage of illustrations, their tone at three sizes, and a table in the form of the paper's Table 1.
+"""Storage of illustrations, what coarser greys cost, their tone at three sizes, and the paper's Table 1.
 
-``python -m tests.benchmarks.illustrations`` prints all; ``--table FOLDER`` prints the table alone, of the figures
-that samples/figures.py has left in the folder (their *.penink files).
+``python -m tests.benchmarks.illustrations [storage greys tone table]`` prints all, or those parts; ``--table FOLDER``
+prints the table alone. Tone and table are of the figures that `make figures` leaves in samples/out (or the folder).
 """
 
 from __future__ import annotations
@@ -17,13 +17,14 @@ from PIL import Image
 from penink_cli.arrangement import detection
 from penink_cli.blasting.blast import blast
 from penink_cli.commands.inputs import read_illustration, settled
-from penink_cli.drawing import enlarged
+from penink_cli.drawing import enlarged, joined, layer_strokes
 from penink_cli.formats import archive, edge_list, illustration, postscript
 from penink_cli.formats.page import lay_out
 from penink_cli.model import EdgeList, GreyImage, Illustration, Layer
 from penink_cli.reconstruction import extraction, reduction
 from penink_cli.reconstruction.enlarge import bands
 from penink_cli.texture_options import find_texture
+from tests.blasting import measures
 
 PHOTOGRAPHS = ("camera", "astronaut", "coffee", "coins", "chelsea")
 # Grid, edges and kilobytes in the paper's Table 1; times that, what is allowed for an object and for a whole frame.
@@ -96,6 +97,41 @@ def storage() -> None:
         )  # fmt: skip
 
 
+def greys() -> None:
+    """What is lost when samples are kept at fewer grey levels than 256, all over the picture and near edges."""
+    print("PSNR of the reconstruction of 128 columns against the photograph, dB, and what fewer bits a sample cost")
+    print("| photograph | 8 bits | 7 | 6 | 5 |")
+    print("| --- | --- | --- | --- | --- |")
+    for name in PHOTOGRAPHS:
+        photo = photograph(name)
+        rows, columns = photo.values.shape
+        edges = with_edges(photo, 500)
+        samples = extraction.extract_samples(photo.grey, edges, None)
+        reduced = reduction.reduce(samples, edges, 128, round(128 * rows / columns))
+        found = []
+        for bits in (8, 7, 6, 5):
+            levels = (1 << bits) - 1
+            kept = (np.round(reduced * levels) / levels).astype(np.float32)
+            large = np.concatenate(list(bands(GreyImage.from_grey(kept, 65535), edges, columns, rows, maxval=65535)))
+            found.append(-10 * np.log10(np.mean((large / 65535 - photo.grey) ** 2)))
+        print(f"| {name} | {found[0]:.2f} | {' | '.join(f'{v - found[0]:+.3f}' for v in found[1:])} |", flush=True)
+
+
+def tone(folder: Path) -> None:
+    """The two-layer illustration of keys and shadow, printed at three sizes, against its photograph."""
+    whole = read_illustration(str(folder / "keys.penink"), 10**8)
+    photo = GreyImage(np.asarray(Image.open(folder / "keys.png").convert("L")), 255)
+    print(f"keys and shadow, {(folder / 'keys.penink').stat().st_size / 1000:.1f} KB, printed at 600 dpi")
+    print("| inches | tone RMS % | bias % | worst % | hatching stroke, pt (median) | strokes |")
+    print("| --- | --- | --- | --- | --- | --- |")
+    for inches in (1, 4, 24):
+        parts = layer_strokes(whole, 72.0 * inches, threads=2)
+        strokes = joined([part for layer in parts for part in layer])
+        rms, bias, worst = measures.tone_figures(strokes, photo.tone)
+        width = np.median(parts[-1][0].widths)
+        print(f"| {inches} | {rms:.2f} | {bias:+.2f} | {worst:.1f} | {width:.2f} | {len(strokes)} |", flush=True)
+
+
 # ------------------------------------------------------------------- Table 1
 
 # Figure, illustration, layer; width and height that are blasted; the paper's row of the same kind.
@@ -155,13 +191,14 @@ def main() -> None:
     if sys.argv[1:2] == ["--table"]:
         table(Path(sys.argv[2]))
         return
-    storage()
+    chosen = sys.argv[1:] or ["storage", "greys", "tone", "table"]
     made = Path(__file__).resolve().parents[2] / "samples" / "out"
-    if (made / "keys.penink").exists():
+    for part in chosen:
+        if part in ("tone", "table") and not (made / "keys.penink").exists():
+            print(f"{part}: needs the figures: make figures")
+            continue
+        {"storage": storage, "greys": greys, "tone": lambda: tone(made), "table": lambda: table(made)}[part]()
         print()
-        table(made)
-    else:
-        print("\nthe table needs the figures: make figures")
 
 
 if __name__ == "__main__":
