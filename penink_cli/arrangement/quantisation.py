@@ -10,20 +10,25 @@ from __future__ import annotations
 
 import numpy as np
 
+from penink_cli.arrangement.sides import rounded_beside_samples
 from penink_cli.model import EdgeList, Floats, Ints
 
 _CELL = 16  # grid points: conflicts are looked for among the edges of such a cell
 _ROUNDS = 50
 
 
-def quantise(edges: EdgeList, columns: int, rows: int) -> EdgeList:
+def quantise(edges: EdgeList, columns: int, rows: int, cell: int = 0) -> EdgeList:
     """The arrangement with every vertex on a grid of columns × rows cells that spans the frame.
+
+    cell: grid cells to a sample's spacing, where samples are to stay on their sides of the edges; 0 for none.
 
     Vertices that come to lie on one another are one, edges that shrink to nothing are gone, of
     edges that coincide the stronger stays. What is on the grid already is returned unchanged but for
     vertices without edges, which are left out.
     """
-    grid = np.rint(edges.vertices * (columns / edges.width, rows / edges.height)).astype(np.int64)
+    exact = edges.vertices * (columns / edges.width, rows / edges.height)
+    grid = rounded_beside_samples(exact, edges.edges, cell) if cell else np.rint(exact).astype(np.int64)
+    grid = np.clip(grid, 0, (columns, rows))
     strength = edges.strength if edges.strength is not None else np.zeros(len(edges.edges))
     grid, ends, strength = _merged(grid, edges.edges, strength)
     for _ in range(_ROUNDS):

@@ -106,7 +106,7 @@ def settled(illustration: Illustration) -> Illustration:
         edges = layer.edges
         if edges is not None:
             rows, columns = layer.samples.values.shape
-            edges = quantise(edges, compact.GRID * columns, compact.GRID * rows)
+            edges = quantise(edges, compact.GRID * columns, compact.GRID * rows, compact.GRID)
         layers.append(replace(layer, edges=edges))
     return rounded(replace(illustration, layers=tuple(layers)))
 

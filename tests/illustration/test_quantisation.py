@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from penink_cli.arrangement import quantisation, validity
+from penink_cli.arrangement import quantisation, sides, validity
 from penink_cli.model import EdgeList
 
 
@@ -64,3 +64,32 @@ def test_of_edges_that_coincide_the_stronger_stays():
 
 def test_nothing_stays_nothing():
     assert len(quantisation.quantise(EdgeList(10, 10), 10, 10).edges) == 0
+
+
+def passed_on_the_left(edges: EdgeList, samples: np.ndarray) -> np.ndarray:
+    """(edges, samples): 1 where an edge passes a sample (not: ends by it) and has it to its left, -1 to its right."""
+    a, b = (edges.vertices[edges.edges[:, k]][:, None] for k in (0, 1))
+    turn = (b - a)[..., 0] * (samples - a)[..., 1] - (b - a)[..., 1] * (samples - a)[..., 0]
+    along = ((samples - a) * (b - a)).sum(-1) / np.maximum(((b - a) ** 2).sum(-1), 1e-9)
+    return np.where((along > 0.05) & (along < 0.95), np.sign(turn), 0)
+
+
+def test_samples_stay_on_their_sides_of_the_edges():
+    samples = np.stack(np.meshgrid(np.arange(24) + 0.5, np.arange(24) + 0.5), axis=-1).reshape(-1, 2)
+    ends = np.column_stack([np.arange(60), (np.arange(60) + 1) % 60])
+    changed = {"beside samples": 0, "nearest": 0}
+    for seed in range(12):
+        rng = np.random.default_rng(seed)
+        turn = np.sort(rng.random(60)) * 2 * np.pi
+        exact = 16 * (12 + rng.uniform(5, 11) * np.column_stack([np.cos(turn), np.sin(turn)]))
+        before = passed_on_the_left(EdgeList(24, 24, exact / 16, ends), samples)
+        beside = sides.rounded_beside_samples(exact, ends, 16)
+        assert np.abs(beside - exact).max() <= 2.5
+        for how, grid in (("beside samples", beside), ("nearest", np.rint(exact))):
+            after = passed_on_the_left(EdgeList(24, 24, grid / 16.0, ends), samples)
+            changed[how] += int(((after != before) & (after != 0) & (before != 0)).sum())
+        found = quantisation.quantise(EdgeList(24, 24, exact / 16, ends), 24 * 16, 24 * 16, 16)
+        again = quantisation.quantise(found, 24 * 16, 24 * 16, 16)
+        assert np.array_equal(found.vertices, again.vertices)
+    assert changed["beside samples"] == 0
+    assert changed["nearest"] > 0  # or nothing is shown
