@@ -16,7 +16,7 @@ from pathlib import Path
 
 PENINK = shlex.split(os.environ.get("PENINK", "penink"))
 GS = os.environ.get("GS", "gs")
-PAGE = (18.6 * 72, 18.1 * 72)
+PAGE = (18.6 * 72, 18.7 * 72)
 MARGIN = 0.7 * 72
 
 
@@ -82,23 +82,28 @@ def scales(s: Studio) -> None:
         s.print("cup", f"cup-{width}", width)
 
 
+MAN = 7.6  # inches wide, of which the page shows this part: left, top and side as shares of the width
+HEAD = (0.27, 0.05, 0.55)
+
+
 def with_and_without(s: Studio) -> None:
     """Figure 4: samples of the same resolution, enlarged without and with their discontinuities."""
     s.represent("camera.png", "man", 80, "--high", 0.12, "--min-length", 12)
     outline = {"pen": 0.6, "min_strength": 0.16, "min_length": 24}
     s.illustrate("man", 4.2, [{"of": "man", "texture": "crosshatch", "outline": outline}])
-    s.print("man", "man-with", 4.2)
+    s.print("man", "man-with", MAN)
     # Without: the samples of a plain reduction, enlarged by a plain filter, hatched up to the same outline strokes.
     nothing = {"format": "penink-edges", "version": 1, "width": 512, "height": 512, "vertices": [], "edges": []}
     (s.folder / "none.edges.json").write_text(json.dumps(nothing))
     s.penink("extract-samples", "-e", "none.edges.json", "camera.png", "-o", "man.plain.full.pgm")
     s.penink("reduce", "--fit", "none", "--size", "80x80", "man.plain.full.pgm", "-o", "man.plain.pgm")
-    s.penink("enlarge", "--soften", "--size", "605x605", "man.plain.pgm", "-o", "man.large.pgm")
+    side = round(2 * 72 * MAN)
+    s.penink("enlarge", "--soften", "--size", f"{side}x{side}", "man.plain.pgm", "-o", "man.large.pgm")
     s.penink(
-        "outline", "--width", "4.2in", "--weight", 0.6, "--min-strength", 0.16, "--min-length", 24, "man.edges.json",
+        "outline", "--width", f"{MAN}in", "--weight", 0.6, "--min-strength", 0.16, "--min-length", 24, "man.edges.json",
         "-o", "man.outlines.jsonl",
     )  # fmt: skip
-    s.blast("man.large.pgm", "man-hatching", 4.2, "--texture", "crosshatch", "--ink", "man.outlines.jsonl")
+    s.blast("man.large.pgm", "man-hatching", MAN, "--texture", "crosshatch", "--ink", "man.outlines.jsonl")
     s.penink("to-ps", "man-hatching.jsonl", "man.outlines.jsonl", "-o", "man-without.eps")
 
 
@@ -175,8 +180,8 @@ class Sheet:
         self.out = [
             f"%!PS-Adobe-3.0\n%%BoundingBox: 0 0 {width:g} {height:g}\n%%Pages: 1\n%%EndComments\n",
             f"<< /PageSize [{width:g} {height:g}] >> setpagedevice\n",
-            "/caption { moveto /Times-Roman 11 selectfont show } bind def\n",
-            "/strong { moveto /Times-Bold 12 selectfont show } bind def\n",
+            "/caption { moveto /Times-Roman 13 selectfont show } bind def\n",
+            "/title { moveto /Times-Bold 26 selectfont show } bind def\n",
         ]
 
     def text(self, x: float, y: float, words: str, style: str = "caption") -> None:
@@ -243,41 +248,41 @@ def compose(folder: Path) -> None:
     """The page: what `scales` and the others have made, side by side, in the order of the paper."""
     sheet = Sheet(*PAGE)
     inch = 72.0
-    left, y = MARGIN, MARGIN + 14
-    sheet.text(left, y, "Pen-and-ink illustrations that keep their tone and their edges at any size", "strong")
-    y += 20
-    x = left
+    left, y = MARGIN, MARGIN + 22
+    sheet.text(left, y, "Pen-and-ink illustrations that keep their tone and their edges at any size", "title")
+    y += 26
     tallest = 4.4 * inch * 2 / 3
-    for width in (1.1, 2.2, 4.4):
-        sheet.drawing(x, y, folder / f"cup-{width}.eps")
-        x += width * inch + 14
-    sheet.text(left, y + tallest + 14, "1  One illustration at three sizes, drawn anew for each: one pen, one tone.")
-    x = naive = left + 8.9 * inch
-    for width in (1.1, 2.2, 4.4):
-        sheet.drawing(x, y, folder / "cup-2.2.eps", width * inch)
-        x += width * inch + 14
-    sheet.text(naive, y + tallest + 14, "2  The strokes of the middle one, scaled: clogged or coarse.")
-    y += tallest + 34
+    naive = left + 8.9 * inch
+    for start, anew in ((left, True), (naive, False)):
+        x = start
+        for width in (1.1, 2.2, 4.4):
+            top = y + tallest - width * inch * 2 / 3  # all stand on one line
+            sheet.drawing(x, top, folder / f"cup-{width if anew else 2.2}.eps", width * inch)
+            x += width * inch + 14
+    sheet.text(left, y + tallest + 18, "1  One illustration at three sizes, drawn anew for each: one pen, one tone.")
+    sheet.text(naive, y + tallest + 18, "2  The strokes of the middle one, scaled: clogged, and coarse.")
+    y += tallest + 40
     w, h = sheet.drawing(left, y, folder / "keys-print.eps")
-    sheet.text(left, y + h + 14, "3  Two layers: keys in cross-hatch with outline strokes, their shadow in stipple.")
+    sheet.text(left, y + h + 18, "3  Two layers: cross-hatched keys, their shadow in stipple.")
     x = left + w + 18
     w, _ = sheet.drawing(x, y, folder / "billiard-print.eps")
-    sheet.text(x, y + h + 14, "4  Strong edges: each stroke ends at them.")
+    sheet.text(x, y + h + 18, "4  Strong edges: each stroke ends at them.")
     x += w + 18
     sheet.drawing(x, y, folder / "portrait.eps")
-    sheet.text(x, y + h + 14, "5  A photograph as penink draw makes it, nothing chosen by hand.")
-    y += h + 34
-    w, h = sheet.drawing(left, y, folder / "man-without.eps")
-    sheet.text(left, y + h + 14, "6  80 by 80 samples enlarged plainly: the hatching misses the outlines;")
+    sheet.text(x, y + h + 18, "5  A photograph as penink draw makes it.")
+    y += h + 40
+    w, h = sheet.drawing(left, y, folder / "man-without.eps", crop=HEAD)
+    sheet.text(left, y + h + 18, "6  From 80 by 80 samples, enlarged plainly;")
     x = left + w + 14
-    sheet.drawing(x, y, folder / "man-with.eps")
-    sheet.text(x, y + h + 14, "enlarged with their discontinuities.")
+    sheet.drawing(x, y, folder / "man-with.eps", crop=HEAD)
+    sheet.text(x, y + h + 18, "enlarged with their discontinuities.")
     x += w + 22
+    small = (PAGE[0] - MARGIN - x - 3 * 10) / 4 / inch
     for i, texture in enumerate(TEXTURES):
-        at = x + i % 4 * (2.0 * inch + 10), y + i // 4 * (h / 2 + 8)
-        _, small = sheet.drawing(*at, folder / f"small-{texture}.eps")
-        sheet.text(at[0], at[1] + small + 14, f"7  {texture}" if i == 0 else texture)
-    y += h + 34
+        at = x + i % 4 * (small * inch + 10), y + i // 4 * (h - small * inch * 2 / 3)
+        _, deep = sheet.drawing(*at, folder / f"small-{texture}.eps", small * inch)
+        sheet.text(at[0], at[1] + deep + 16, f"7  {texture}" if i == 0 else texture)
+    y += h + 40
     side, gap = 2.75 * inch, 10.0
     panels = ("samples", "edges", "plain", "sharp", "plain-drawn", "sharp-drawn")
     captions = ("8  The samples of a corner of 3", "their discontinuity edges", "plainly enlarged", "edge-aware",
@@ -291,7 +296,7 @@ def compose(folder: Path) -> None:
             sheet.drawing(x, y, folder / f"close-{panel}.eps", crop=crop)
         else:
             sheet.picture(x, y, folder / f"close-{panel}.pgm", side)
-        sheet.text(x, y + side + 14, caption)
+        sheet.text(x, y + side + 18, caption)
     sheet.write(folder)
 
 
