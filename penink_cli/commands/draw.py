@@ -109,7 +109,7 @@ def draw(
             threads=threads,
         )  # fmt: skip
         advance(1)
-    WRITERS[ending](output, [hatched, outlined] if outlined else [hatched])
+    WRITERS[ending](output, [hatched] if outlined is None else [hatched, outlined])
 
 
 # ------------------------------------------------------------------- the picture, by its ending

@@ -99,7 +99,17 @@ def test_bad_manifests_are_refused(loose):
         assert reason in str(raised.value) and str(raised.value).startswith(str(loose)), (change, str(raised.value))
 
 
-def test_draw_gives_the_bytes_of_the_chain_it_prints(penink, photo, tmp_path):
+@pytest.fixture(scope="module")
+def noise(tmp_path_factory):
+    """A photograph that no grid represents, and that has no edge worth an outline."""
+    path = tmp_path_factory.mktemp("photo") / "noise.png"
+    Image.fromarray(np.random.default_rng(1).integers(0, 256, (75, 100), np.uint8)).save(path)
+    return path
+
+
+@pytest.mark.parametrize("picture", ["photo", "noise"])
+def test_draw_gives_the_bytes_of_the_chain_it_prints(penink, picture, request, tmp_path):
+    photo = request.getfixturevalue(picture)
     done = penink("draw", photo, "--width", "2in", "--verbose", "-o", "drawn.eps", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     direct = (tmp_path / "drawn.eps").read_bytes()
