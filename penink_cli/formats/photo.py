@@ -1,8 +1,8 @@
 """Photographs to grey: PGM and PPM by the Netpbm reader, PNG, JPEG, TIFF and WebP by Pillow.
 
 Pillow is given these formats and no other: left to itself it would start Ghostscript on an EPS.
-Its leniencies are made up for here: it only warns of images between 89 and 179 megapixels,
-accepts a PNG whose compressed rows end early, and forgets that white is zero in some TIFFs.
+Its leniencies are made up for here and in `damage`: it only warns of images between 89 and 179
+megapixels, shows what is left of damaged PNG and JPEG files, and forgets that white is zero in some TIFFs.
 
 Grey is Rec. 601 luma of the values as stored, in integers; transparency lies on white; the EXIF
 orientation is applied. What was stored in 16 bits of grey stays in 16 bits.
@@ -14,7 +14,6 @@ import contextlib
 import io
 import struct
 import warnings
-import zlib
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any, BinaryIO
 
@@ -22,7 +21,7 @@ import numpy as np
 import numpy.typing as npt
 
 from penink_cli.errors import FormatError, LimitError, PeninkError, printable
-from penink_cli.formats import pgm
+from penink_cli.formats import damage, pgm
 from penink_cli.model import GreyImage
 
 if TYPE_CHECKING:
@@ -121,8 +120,10 @@ def _decoded(encoded: io.BytesIO, kind: str, max_pixels: int) -> GreyImage:
     with _pillow_errors(kind), Image.open(encoded, formats=(kind,)) as image:
         pgm.check_size(*image.size, max_pixels)
         if kind == "PNG":
-            _check_png(encoded.getvalue(), *image.size)
+            damage.check_png(encoded.getvalue(), *image.size)
         image.load()
+        if kind == "JPEG":
+            damage.check_jpeg(encoded.getvalue(), image.mode)
         _turn_upright(image)
         return _grey(image)
 
@@ -181,47 +182,3 @@ def _luma(colours: npt.NDArray[np.int64]) -> npt.NDArray[np.int64]:
         alpha = colours[..., 3:]
         colours = (colours[..., :3] * alpha + 255 * (255 - alpha) + 127) // 255
     return (colours[..., 0] * RED + colours[..., 1] * GREEN + colours[..., 2] * BLUE + 500) // 1000
-
-
-# ------------------------------------------------------------------------ PNG
-
-_CHANNELS = {0: 1, 2: 3, 3: 1, 4: 2, 6: 4}
-# Adam7: first column, first row, step in x and step in y of each pass.
-_PASSES = ((0, 0, 8, 8), (4, 0, 8, 8), (0, 4, 4, 8), (2, 0, 4, 4), (0, 2, 2, 4), (1, 0, 2, 2), (0, 1, 1, 2))
-
-
-def _check_png(encoded: bytes, width: int, height: int) -> None:
-    """Raise FormatError for a PNG that is cut short or damaged, where Pillow would show black rows instead.
-
-    Every chunk is whole up to the last, and the compressed data hold every row and end with their checksum.
-    """
-    bits, colour, _, _, interlace = encoded[24:29]
-    needed = _png_bytes(width, height, bits * _CHANNELS.get(colour, 4), bool(interlace))
-    found, inflate, at, name = 0, zlib.decompressobj(), 8, b""
-    while name != b"IEND":
-        if at + 12 > len(encoded):
-            raise FormatError("truncated: the PNG has no end")
-        length, name = struct.unpack_from(">I4s", encoded, at)
-        end = at + 8 + length
-        if end + 4 > len(encoded):
-            raise FormatError(f"truncated: {len(encoded)} of at least {end + 4} PNG bytes")
-        content = encoded[at + 8 : end]
-        if zlib.crc32(content, zlib.crc32(name)) != int.from_bytes(encoded[end : end + 4], "big"):
-            raise FormatError(f"damaged PNG photograph: checksum of its chunk {printable(name.decode('latin-1'))}")
-        # More than is needed is not looked at: it may be a bomb, and other programs ignore it.
-        while name == b"IDAT" and content and found <= needed and not inflate.eof:
-            found += len(inflate.decompress(content, BAND))
-            content = inflate.unconsumed_tail
-        at = end + 4
-    if found < needed or (found == needed and not inflate.eof):
-        raise FormatError(f"truncated: {found} of {needed} bytes of PNG rows")
-
-
-def _png_bytes(width: int, height: int, bits_per_pixel: int, interlaced: bool) -> int:
-    """Bytes of all rows of all passes, each with the byte that names its filter."""
-    total = 0
-    for x, y, step_x, step_y in _PASSES if interlaced else ((0, 0, 1, 1),):
-        columns, rows = -(-(width - x) // step_x), -(-(height - y) // step_y)
-        if columns > 0 and rows > 0:
-            total += rows * (1 + (columns * bits_per_pixel + 7) // 8)
-    return total

@@ -9,10 +9,11 @@ import zlib
 
 import numpy as np
 import pytest
+import skimage.data
 from PIL import Image
 
 from penink_cli.errors import FormatError, LimitError, PeninkError
-from penink_cli.formats import pgm, photo
+from penink_cli.formats import damage, pgm, photo
 from penink_cli.model import GreyImage
 from tests.formats.readers import written
 
@@ -224,7 +225,7 @@ def test_the_rows_of_a_png_of_any_kind_are_counted(bits, colour, interlace):
     """The rows that each pass has by the definition, and not a byte less."""
     channels = {0: 1, 2: 3, 4: 2, 6: 4}[colour]
     width, height = 5, 6
-    passes = photo._PASSES if interlace else ((0, 0, 1, 1),)
+    passes = damage._PASSES if interlace else ((0, 0, 1, 1),)
     whole = 0
     for x, y, step_x, step_y in passes:
         columns, lines = len(range(x, width, step_x)), len(range(y, height, step_y))
@@ -248,6 +249,33 @@ def test_a_photograph_one_byte_short(kind):
     data = saved(Image.fromarray(COLOUR), kind)
     with pytest.raises(FormatError):
         read(data[:-1])
+
+
+@pytest.mark.parametrize(
+    ("options", "found"), [({}, 0.9), ({"restart_marker_rows": 1}, 0.9), ({"progressive": True}, 0.65)], ids=str
+)
+def test_damage_within_a_jpeg(options, found):
+    """There is no checksum, but a piece cut out puts the codes out of step, and an end moved up leaves blocks over."""
+    data = saved(Image.fromarray(skimage.data.chelsea()), "JPEG", quality=85, subsampling=2, **options)
+    assert read(data, 10**6).values.shape == (300, 451)
+    places = np.linspace(len(data) / 5, len(data) - 200, 60).astype(int)
+    refused = 0
+    for at in places:
+        if "progressive" not in options:  # there an early end is a coarser picture, and allowed
+            with pytest.raises(FormatError, match=r"p.img: (damaged JPEG|truncated)"):
+                read(data[:at] + b"\xff\xd9", 10**6)
+        try:
+            read(data[:at] + data[at + 100 :], 10**6)
+        except FormatError:
+            refused += 1
+    assert refused >= found * len(places)
+
+
+@pytest.mark.parametrize("fill", [b"\0" * 40, b"\xff" * 9, b"\x12\x34"])
+def test_a_jpeg_filled_up_by_its_camera_is_read(fill):
+    data = saved(Image.fromarray(COLOUR), "JPEG")
+    assert np.array_equal(read(data[:-2] + fill + data[-2:]).values, read(data).values)
+    assert np.array_equal(read(data + fill + b"\xff\xd9 a trailer").values, read(data).values)
 
 
 def test_any_damage_to_a_png_is_found():
