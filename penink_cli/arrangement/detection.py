@@ -8,15 +8,19 @@ import numpy as np
 import numpy.typing as npt
 
 from penink_cli.arrangement import _planar
-from penink_cli.arrangement.chains import Chains, Joints, chain_lengths, join_ends, link_chains, sharpen, unbend
+from penink_cli.arrangement.chains import Chains, chain_lengths, link_chains
+from penink_cli.arrangement.corners import sharpen
 from penink_cli.arrangement.gradient import EdgePoints, edge_points, noise_level
+from penink_cli.arrangement.joints import Joints, join_ends, loose_ends
 from penink_cli.arrangement.planar import from_units, planar, to_units
 from penink_cli.arrangement.simplification import simplify
+from penink_cli.arrangement.smoothing import position_error, smooth, unbend
 from penink_cli.model import EdgeList
 
 TOLERANCE = 0.3
 MIN_LENGTH = 6.0
 TELLING = 10.0  # grass and fur reach 6 to 9, outlines 13 and more
+_BRIDGE = 0.5  # of that is enough for a chain that leads from one telling chain to another, or to the frame
 _CAMERA_BLUR = 0.8  # pixels: pixel area, lens and the central difference, where nothing better is known
 
 
@@ -43,19 +47,21 @@ def detect_edges(
     height, width = grey.shape
     noise = noise_level(grey)
     if sigma is None:
-        sigma = float(np.clip(0.3 + 0.275 * 255 * noise, 0.6, 1.6))
+        sigma = float(np.clip(0.3 + 0.225 * 255 * noise, 0.6, 1.6))
     steepness = 1 / (np.sqrt(2 * np.pi) * np.hypot(sigma, _CAMERA_BLUR))  # of an edge of step 1, grey per pixel
     unrest = noise / (5.013 * sigma * sigma) / steepness  # the noise of the gradient, as a step
     high = max(0.05, 6 * unrest) if high is None else high
     low = min(max(0.5 * high, 3.5 * unrest) if low is None else low, high)
     points = edge_points(grey, sigma, low * steepness)
-    chains = _telling(points, link_chains(points), high * steepness, min_length)
+    chains = _telling(points, link_chains(points), high * steepness, min_length, sigma)
     if not len(chains):
         return EdgeList(width, height, strength=np.zeros(0))
     blur = _blur(points, chains, sigma)
-    points = replace(points, position=unbend(points, chains, blur))
-    position, chains = sharpen(points, chains, blur)
-    points = replace(points, position=position)
+    error = position_error(points, noise, sigma, blur)
+    sharp = sharpen(points, chains, blur, error)
+    points, chains = replace(points, position=sharp.position), sharp.chains
+    points = replace(points, position=smooth(points.position, sharp.pieces, error))
+    points = replace(points, position=unbend(points, sharp.pieces, blur))
     return _arrange(points, chains, join_ends(points, chains, blur), tolerance, steepness)
 
 
@@ -66,12 +72,13 @@ def _blur(points: EdgePoints, chains: Chains, sigma: float) -> float:
     return float(np.clip(np.median(widths), sigma, 3 * sigma)) if len(widths) else float(np.hypot(sigma, _CAMERA_BLUR))
 
 
-def _telling(points: EdgePoints, chains: Chains, high: float, min_length: float) -> Chains:
+def _telling(points: EdgePoints, chains: Chains, high: float, min_length: float, sigma: float) -> Chains:
     """The chains that tell something: steep enough somewhere, long enough, and no texture.
 
     In texture (grass, fur, noise) every ridge of the gradient has others as steep around it, and
     the ridges are short or meander. So a chain's steepness is taken in relation to the mean
-    steepness around it, and it counts the more the farther the chain goes.
+    steepness around it, and it counts the more the farther the chain goes. A short chain between two
+    outlines cannot go far, and they are steep around it: half as much is asked of it.
     """
     if not len(chains):
         return chains
@@ -80,13 +87,19 @@ def _telling(points: EdgePoints, chains: Chains, high: float, min_length: float)
     contrast = np.add.reduceat(steepness, first) / np.maximum(np.add.reduceat(points.surround[order], first), 1e-12)
     position = points.position[order]
     extent = np.hypot(*(np.maximum.reduceat(position, first) - np.minimum.reduceat(position, first)).T)
-    telling = contrast * np.sqrt(extent) >= TELLING
-    return chains.where(
-        telling
+    size = contrast * np.sqrt(extent)
+    candidates = (
+        (size >= _BRIDGE * TELLING)
         & (np.maximum.reduceat(steepness, first) >= high)
         & (chain_lengths(chains, points.position) >= min_length)
         & (count >= 3)
     )
+    chains, telling = chains.where(candidates), size[candidates] >= TELLING
+    blur = _blur(points, chains.where(telling), sigma)
+    ends = loose_ends(points, chains, blur, telling)
+    joined = (ends.meets | ends.to_frame).reshape(2, -1).all(axis=0)
+    telling[np.flatnonzero(~chains.ring)[joined]] = True
+    return chains.where(telling)
 
 
 def _arrange(points: EdgePoints, chains: Chains, joints: Joints, tolerance: float, steepness: float) -> EdgeList:
