@@ -76,7 +76,7 @@ def _corners(
     most_shift: float,
     shape: tuple[int, int],
 ) -> Iterator[tuple[int, Floats, npt.NDArray[np.intp]]]:
-    """Each corner's chain entry, x and y, and the entries it stands for; the best in the middle of their bends first."""
+    """Each corner's chain entry, x and y, and the entries it stands for; those amid their bends first."""
 
     t = np.arange(stretch) - (stretch - 1) / 2
     square = t * t - (t * t).mean()

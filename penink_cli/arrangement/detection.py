@@ -19,8 +19,9 @@ from penink_cli.model import EdgeList
 
 TOLERANCE = 0.3
 MIN_LENGTH = 6.0
-TELLING = 10.0  # grass and fur reach 6 to 9, outlines 13 and more
-_BRIDGE = 0.5  # of that is enough for a chain that leads from one telling chain to another, or to the frame
+TELLING = 13.0  # the median of grass and fur is 6, of outlines over 20
+_ALONE = 2.0  # times as steep as what is around: texture reaches 1.4 to 2, letters 2.5 to 3.3
+_BRIDGE = 0.4  # of that is enough for a chain that leads from one telling chain to another, or to the frame
 _CAMERA_BLUR = 0.8  # pixels: pixel area, lens and the central difference, where nothing better is known
 
 
@@ -77,8 +78,9 @@ def _telling(points: EdgePoints, chains: Chains, high: float, min_length: float,
 
     In texture (grass, fur, noise) every ridge of the gradient has others as steep around it, and
     the ridges are short or meander. So a chain's steepness is taken in relation to the mean
-    steepness around it, and it counts the more the farther the chain goes. A short chain between two
-    outlines cannot go far, and they are steep around it: half as much is asked of it.
+    steepness around it, and it counts the more the farther the chain goes, and much more where it
+    stands alone, as letters do, which cannot go far. A short chain between two
+    outlines cannot go far either, and they are steep around it: less than half as much is asked of it.
     """
     if not len(chains):
         return chains
@@ -87,7 +89,7 @@ def _telling(points: EdgePoints, chains: Chains, high: float, min_length: float,
     contrast = np.add.reduceat(steepness, first) / np.maximum(np.add.reduceat(points.surround[order], first), 1e-12)
     position = points.position[order]
     extent = np.hypot(*(np.maximum.reduceat(position, first) - np.minimum.reduceat(position, first)).T)
-    size = contrast * np.sqrt(extent)
+    size = contrast * np.sqrt(extent) * np.maximum(1, contrast / _ALONE) ** 2
     candidates = (
         (size >= _BRIDGE * TELLING)
         & (np.maximum.reduceat(steepness, first) >= high)
