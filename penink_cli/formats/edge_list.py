@@ -28,14 +28,22 @@ BAND = 1 << 15  # vertices or edges written at a time
 BYTES_PER_PIXEL = 0.8
 LEAST_BYTES = 80_000_000
 
+
+def _spaced(*parts: bytes) -> re.Pattern[bytes]:
+    """The parts with what JSON calls white space around each; ``\\s`` would take form feeds too."""
+    gap = rb"[ \t\r\n]*"
+    return re.compile(gap + gap.join(parts) + gap)
+
+
 # What `write` writes, but for white space and the digits; all else is left to json.
-_HEAD = re.compile(
-    rb'\s*\{\s*"format"\s*:\s*"penink-edges"\s*,\s*"version"\s*:\s*1\s*,\s*"width"\s*:\s*([1-9][0-9]{0,9})\s*,'
-    rb'\s*"height"\s*:\s*([1-9][0-9]{0,9})\s*,\s*"vertices"\s*:\s*\['
-)
-_EDGES = re.compile(rb'\s*,\s*"edges"\s*:\s*\[')
-_STRENGTH = re.compile(rb'\s*,\s*"strength"\s*:\s*\[')
-_END = re.compile(rb"\s*\}\s*")
+_SIDE = rb"([1-9][0-9]{0,9})"
+_HEAD = _spaced(
+    rb"\{", rb'"format"', b":", rb'"penink-edges"', b",", rb'"version"', b":", b"1", b",",
+    rb'"width"', b":", _SIDE, b",", rb'"height"', b":", _SIDE, b",", rb'"vertices"', b":", rb"\[",
+)  # fmt: skip
+_EDGES = _spaced(b",", rb'"edges"', b":", rb"\[")
+_STRENGTH = _spaced(b",", rb'"strength"', b":", rb"\[")
+_END = _spaced(rb"\}")
 
 
 def read(stream: BinaryIO, source: str, max_pixels: int = 0) -> EdgeList:

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import contextlib
 import io
+import os
 import struct
 import warnings
 from collections.abc import Callable, Iterator
@@ -100,7 +101,7 @@ def _pillow_errors(kind: str) -> Iterator[None]:
 
     Image.MAX_IMAGE_PIXELS = None  # our own limit stands in its place, and is an error
     try:
-        with warnings.catch_warnings():
+        with warnings.catch_warnings(), _silence() if kind == "TIFF" else contextlib.nullcontext():
             warnings.simplefilter("ignore")  # of damaged metadata, which are of no use here
             yield
     except PeninkError:
@@ -108,10 +109,27 @@ def _pillow_errors(kind: str) -> Iterator[None]:
     except MemoryError:
         raise LimitError("does not fit into memory") from None
     except UnidentifiedImageError:
-        raise FormatError(f"damaged {kind} photograph: its header makes no sense") from None
+        raise FormatError(f"damaged {kind} photograph, or one of a rare kind: its header makes no sense") from None
     except Exception as error:
         why = str(error) or type(error).__name__
         raise FormatError(f"damaged {kind} photograph: {printable(why, 60)}") from error
+
+
+@contextlib.contextmanager
+def _silence() -> Iterator[None]:
+    """Keep libtiff from writing to standard error; what it has found comes back as an exception as well."""
+    try:
+        kept, null = os.dup(2), os.open(os.devnull, os.O_WRONLY)
+    except OSError:  # standard error is closed: nothing can be written
+        yield
+        return
+    try:
+        os.dup2(null, 2)
+        yield
+    finally:
+        os.dup2(kept, 2)
+        os.close(kept)
+        os.close(null)
 
 
 def _decoded(encoded: io.BytesIO, kind: str, max_pixels: int) -> GreyImage:
@@ -119,6 +137,9 @@ def _decoded(encoded: io.BytesIO, kind: str, max_pixels: int) -> GreyImage:
 
     with _pillow_errors(kind), Image.open(encoded, formats=(kind,)) as image:
         pgm.check_size(*image.size, max_pixels)
+        tags: Any = getattr(image, "tag_v2", {})
+        if tags.get(284) == 2 and max(tags.get(258, (8,))) > 8:
+            raise FormatError("TIFF photograph of more than 8 bits in separate planes")  # which Pillow mixes up
         if kind == "PNG":
             damage.check_png(encoded.getvalue(), *image.size)
         image.load()

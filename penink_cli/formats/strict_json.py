@@ -19,6 +19,7 @@ import numpy.typing as npt
 from penink_cli.errors import FormatError, printable
 from penink_cli.model import Floats, Ints
 
+_LONG = re.compile(rb"[0-9]{309}")  # digits: the shortest integer that may be beyond a double
 _HALF_SURROGATE = re.compile(rb"\\u[dD][89a-fA-F]")
 
 
@@ -44,11 +45,22 @@ def _finite(digits: str) -> float:
     return value
 
 
+def _in_range(digits: str) -> int:
+    try:
+        float(value := int(digits))
+    except OverflowError:
+        raise _Refused(f"number {printable(digits, 60)} is out of range") from None
+    return value
+
+
 def _constant(name: str) -> Any:
     raise _Refused(f"{name} is not JSON")
 
 
 _DECODER = json.JSONDecoder(object_pairs_hook=_members, parse_float=_finite, parse_constant=_constant)
+_LONG_DECODER = json.JSONDecoder(
+    object_pairs_hook=_members, parse_float=_finite, parse_constant=_constant, parse_int=_in_range
+)
 
 
 def loads(text: bytes, source: str | None = None, place: str = "") -> Any:
@@ -64,7 +76,7 @@ def loads(text: bytes, source: str | None = None, place: str = "") -> Any:
     except UnicodeDecodeError as error:
         raise FormatError(f"{where}byte {error.start}: not UTF-8", source) from None
     try:
-        value = _DECODER.decode(decoded)
+        value = (_LONG_DECODER if _LONG.search(text) else _DECODER).decode(decoded)
         if _HALF_SURROGATE.search(text):
             _check_surrogates(value)
     except _Refused as error:

@@ -117,14 +117,12 @@ def _header(line: bytes) -> dict[str, Any]:
     for side in ("width", "height"):
         header[side] = _size(value, side, 1)
     for name in ("layer", "texture"):
-        text = value.get(name)
-        if not (text is None or isinstance(text, str)):
-            raise FormatError(f"line 1: {name} {_shown(text)} is not a string")
-        header[name] = text
-    seed = value.get("seed")
-    if seed is not None and (isinstance(seed, bool) or not isinstance(seed, int) or abs(seed) >= 1 << 63):
-        raise FormatError(f"line 1: seed {_shown(seed)} is not a whole number of 64 bits")
-    header["seed"] = seed
+        header[name] = value.get(name)
+        if not isinstance(value.get(name, ""), str):
+            raise FormatError(f"line 1: {name} {strict_json.quoted(value[name])} is not a string")
+    header["seed"] = value.get("seed")
+    if type(seed := value.get("seed", 0)) is not int or abs(seed) >= 1 << 63:
+        raise FormatError(f"line 1: seed {strict_json.quoted(seed)} is not a whole number of 64 bits")
     return header
 
 

@@ -210,6 +210,20 @@ def png(width: int, height: int, rows: bytes, bits: int = 8, colour: int = 0, in
     return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b"")
 
 
+def test_what_libtiff_says_is_not_said_twice(capfd):
+    data = bytearray(saved(Image.fromarray(COLOUR), "TIFF", compression="tiff_adobe_deflate"))
+    data[20:40] = bytes(20)
+    with pytest.raises(FormatError, match="damaged TIFF"):
+        read(bytes(data))
+    assert capfd.readouterr().err == ""
+
+
+def test_a_tiff_whose_planes_pillow_would_mix_up():
+    tags = {258: (3, 16), 262: (3, 2), 277: (3, 3), 284: (3, 2)}
+    with pytest.raises(FormatError, match="separate planes"):
+        read(tiff(tags, DEEP.astype("<u2").tobytes() * 3))
+
+
 def test_a_png_one_row_short():
     row = b"\x00" + b"\x80" * 4
     assert read(png(4, 3, row * 3)).values.tolist() == [[128] * 4] * 3

@@ -28,6 +28,7 @@ REFUSED = {
     "-Infinity": (b"[-Infinity]", "-Infinity is not JSON"),
     "infinity without a token": (b"[1e999]", "1e999 is out of range"),
     "minus infinity without a token": (b"[-1e999]", "-1e999 is out of range"),
+    "an integer beyond a double": (b"[-" + b"9" * 309 + b"]", "is out of range"),
     "5000 digits": (b"[" + b"9" * 5000 + b"]", "too many digits"),
     "5000 digits and a fraction": (b"[" + b"9" * 5000 + b".5]", "out of range"),
     "a member twice": (b'{"a": 1, "b": 2, "a": 1}', 'member "a" appears twice'),
@@ -75,7 +76,7 @@ def test_the_place_is_named():
 
 
 @pytest.mark.parametrize(
-    "text", [b'"\\ud83d\\ude00"', '"😀"'.encode(), b"1e308", b"1e-999", b"-0.0", b" [ ] \r\n", b"9" * 400]
+    "text", [b'"\\ud83d\\ude00"', '"😀"'.encode(), b"1e308", b"1e-999", b"-0.0", b" [ ] \r\n", b"1" + b"0" * 308, b"0." + b"3" * 400]
 )
 def test_is_read(text):
     assert strict_json.loads(text) == json.loads(text)

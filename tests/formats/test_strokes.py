@@ -118,6 +118,8 @@ def test_numbers_are_the_doubles_that_python_reads(text):
         (b'{"format": "penink-strokes", "version": 1, "width": 1, "height": true}\n', "line 1: height true"),
         (b'{"format": "penink-strokes", "version": 1, "width": 1, "height": 1, "layer": 7}\n', "layer 7 is not"),
         (b'{"format": "penink-strokes", "version": 1, "width": 1, "height": 1, "seed": 0.5}\n', "seed 0.5 is not"),
+        (b'{"format": "penink-strokes", "version": 1, "width": 1, "height": 1, "layer": null}\n', "layer null is not"),
+        (b'{"format": "penink-strokes", "version": 1, "width": 1, "height": 1, "seed": null}\n', "seed null is not"),
         (HEADER + b"\n", "line 2"),
         (HEADER + b"7\n", "line 2: 7 is not a stroke"),
         (HEADER + b'{"width": 1, "points": [[1, 2]]}\n{"width": 1, "points": [[1, 2]]\n', "line 3"),

@@ -1,0 +1,173 @@
+"""Textures and illustrations: every rule of their formats, and what is said where one is broken."""
+
+from __future__ import annotations
+
+import io
+import json
+from typing import Any
+
+import pytest
+
+from penink_cli.errors import PeninkError
+from penink_cli.formats import texture
+from tests.formats.readers import READERS
+from tests.fuzz.seeds import ILLUSTRATION, TEXTURE
+
+STROKE: Any = TEXTURE["strokes"][0]  # type: ignore[index]
+HATCH = {"angle": 45, "from": 0, "to": 0.5, "pen": 0.4}
+LAYER: Any = ILLUSTRATION["layers"][0]  # type: ignore[index]
+
+
+def tile(**members: object) -> dict[str, Any]:
+    return {**TEXTURE, **members}
+
+
+def stroke(**members: object) -> dict[str, Any]:
+    return tile(strokes=[STROKE, {**STROKE, **members}])
+
+
+def hatch(**members: object) -> dict[str, Any]:
+    return tile(layers=[{**HATCH, **members}])
+
+
+def page(**members: object) -> dict[str, Any]:
+    return {**ILLUSTRATION, **members}
+
+
+def layer(**members: object) -> dict[str, Any]:
+    return page(layers=[{**LAYER, **members}])
+
+
+def outline(**members: object) -> dict[str, Any]:
+    return layer(outline=members)
+
+
+def without(document: dict[str, Any], name: str) -> dict[str, Any]:
+    return {key: value for key, value in document.items() if key != name}
+
+
+TEXTURES = {
+    "an array": ([], "an object is expected"),
+    "an edge list": (tile(format="penink-edges"), "format is"),
+    "version true": (tile(version=True), "version is true"),
+    "version 1.0": (tile(version=1.0), "version is 1.0"),
+    "no name": (without(TEXTURE, "name"), '"name" is missing'),
+    "name a number": (tile(name=7), "name is 7; text"),
+    "no width": (without(TEXTURE, "width"), '"width" is missing'),
+    "width 0": (tile(width=0), "width is 0"),
+    "width true": (tile(width=True), "width is true"),
+    "a negative height": (tile(height=-9), "height is -9"),
+    "height beyond the limit": (tile(height=1e8), "height is"),
+    "whole 1": (tile(whole=1), "whole is 1; true or false"),
+    "whole null": (tile(whole=None), "whole is null"),
+    "no strokes": (without(TEXTURE, "strokes"), '"strokes" is missing'),
+    "strokes empty": (tile(strokes=[]), "strokes is empty"),
+    "strokes an object": (tile(strokes={}), "strokes is an object"),
+    "a stroke that is a list": (tile(strokes=[STROKE, []]), "stroke 1 is []"),
+    "a stroke without priority": (tile(strokes=[without(STROKE, "priority")]), 'stroke 0: member "priority"'),
+    "a stroke without points": (tile(strokes=[without(STROKE, "points")]), 'stroke 0: member "points"'),
+    "priority true": (stroke(priority=True), "stroke 1: priority is true"),
+    "priority as text": (stroke(priority="1"), "stroke 1: priority is"),
+    "width of a stroke 0": (stroke(width=0), "stroke 1: width is 0"),
+    "width of a stroke null": (stroke(width=None), "stroke 1: width is null"),
+    "no points": (stroke(points=[]), "stroke 1: 0 points"),
+    "two points": (stroke(points=[[1, 1], [2, 2]]), "stroke 1: 2 points"),
+    "a point of three": (stroke(points=[[1, 1, 1]]), "stroke 1: point 0 is"),
+    "a coordinate false": (stroke(points=[[1, False]]), "stroke 1: point 0 holds false"),
+    "a coordinate as text": (stroke(points=[["1", 1]]), "stroke 1: point 0 holds"),
+    "a point beyond the limit": (stroke(points=[[1, -2e7]]), "stroke 1: a point beyond"),
+    "points an object": (stroke(points={}), "stroke 1: points is an object"),
+    "layers an object": (tile(layers={}), "layers is an object"),
+    "a layer null": (tile(layers=[None]), "layer 0 is null"),
+    "a layer without its pen": (tile(layers=[without(HATCH, "pen")]), 'layer 0: member "pen"'),
+    "an angle of more than a turn": (hatch(angle=361), "layer 0: angle is 361"),
+    "a tone above 1": (hatch(to=1.1), "layer 0: to is 1.1"),
+    "tones the wrong way round": (hatch(**{"from": 0.5}), '"from" must be less'),
+    "a pen of nothing": (hatch(pen=0), "layer 0: pen is 0"),
+    "a wave shorter than it is high": (hatch(wave=3, wave_length=4), "at least four times"),
+    "infinity": (json.dumps(TEXTURE).replace("0.4", "1e999"), "out of range"),
+    "a member twice": (json.dumps(TEXTURE).replace("{", '{"width": 9, ', 1), "appears twice"),
+    "cut short": (json.dumps(TEXTURE)[:-9], "not JSON"),
+    "nothing": ("", "empty"),
+}
+
+ILLUSTRATIONS = {
+    "an array": ([], "an object is expected"),
+    "a texture": (page(format="penink-texture"), "format is"),
+    "version 2": (page(version=2), "version is 2"),
+    "no width": (without(ILLUSTRATION, "width"), '"width" is missing'),
+    "width 0": (page(width=0), "width is 0"),
+    "width as text": (page(width="9"), 'width is "9"'),
+    "height true": (page(height=True), "height is true"),
+    "a page of 4 km": (page(height=1e7), "height is"),
+    "no layers": (without(ILLUSTRATION, "layers"), '"layers" is missing'),
+    "layers empty": (page(layers=[]), "0 layers; 1 to 64"),
+    "too many layers": (page(layers=[LAYER] * 65), "65 layers; 1 to 64"),
+    "layers an object": (page(layers={}), "layers is an object"),
+    "a layer that is text": (page(layers=["a"]), 'layer 0 is "a"'),
+    "no samples": (page(layers=[without(LAYER, "samples")]), 'layer 0: member "samples"'),
+    "samples null": (layer(samples=None), "layer 0: samples is null"),
+    "samples nowhere": (layer(samples=""), "relative to the manifest"),
+    "an absolute path": (layer(samples="/etc/passwd"), "relative to the manifest"),
+    "a null in a path": (layer(samples="a\0b"), "relative to the manifest"),
+    "edges in place of samples": (layer(samples="a.edges"), 'layer 0: samples "a.edges": not a PGM'),
+    "samples in place of edges": (layer(edges="a"), 'layer 0: edges "a": line 1, column 1'),
+    "edges null": (layer(edges=None), "layer 0: edges is null"),
+    "a texture there is none of": (layer(texture="nonesuch"), "layer 0: "),
+    "a texture file that is none": (layer(texture="a.json"), 'layer 0: texture "a.json"'),
+    "texture null": (layer(texture=None), "layer 0: texture is null"),
+    "a rule nobody knows": (layer(rule="fair"), "known are best, strict, threshold"),
+    "name a number": (layer(name=1), "layer 0: name is 1"),
+    "one level": (layer(levels=1), "layer 0: levels is 1"),
+    "half a level": (layer(levels=2.5), "layer 0: levels is 2.5"),
+    "a pen of nothing": (layer(pen=0), "layer 0: pen is 0"),
+    "pen true": (layer(pen=True), "layer 0: pen is true"),
+    "gamma 0": (layer(gamma=0), "layer 0: gamma is 0"),
+    "a negative seed": (layer(seed=-1), "layer 0: seed is -1"),
+    "a seed of 64 bits": (layer(seed=2**63), "layer 0: seed is"),
+    "outline true": (layer(outline=True), "layer 0: outline is true"),
+    "outline even 1": (outline(even=1), "outline: even is 1"),
+    "a strength above 1": (outline(min_strength=1.5), "outline: min_strength is 1.5"),
+    "a negative length": (outline(min_length=-1), "outline: min_length is -1"),
+    "a region of one number": (outline(regions=[[1]]), "region 0 is [1]"),
+    "regions null": (outline(regions=None), "regions is null"),
+    "NaN": (json.dumps(ILLUSTRATION).replace("0.5", "NaN"), "NaN is not JSON"),
+    "nothing": ("", "empty"),
+}
+
+
+def text_of(document: Any) -> bytes:
+    return document.encode() if isinstance(document, str) else json.dumps(document).encode()
+
+
+@pytest.mark.parametrize(
+    ("reader", "name"), [("texture", n) for n in TEXTURES] + [("illustration", n) for n in ILLUSTRATIONS]
+)
+def test_is_refused(reader, name):
+    document, complaint = {"texture": TEXTURES, "illustration": ILLUSTRATIONS}[reader][name]
+    with pytest.raises(PeninkError) as caught:
+        READERS[reader](text_of(document))
+    line = str(caught.value)
+    assert complaint in line and line.startswith("given.file: ") and line.isprintable() and len(line) < 300
+
+
+TAKEN = {
+    "a texture with notes": ("texture", tile(note=[None, {"by": "hand"}], Width=-1)),
+    "a dot, and a negative priority": ("texture", stroke(points=[[5, 5]], priority=-2.5)),
+    "a hatched texture": ("texture", hatch(wave=1, wave_length=4)),
+    "an illustration with notes": ("illustration", page(note=1, layers=[{**LAYER, "note": 2}])),
+    "the least illustration": ("illustration", page(layers=[{"samples": "a"}])),
+    "an empty outline": ("illustration", outline()),
+}
+
+
+@pytest.mark.parametrize("name", TAKEN)
+def test_is_read(name):
+    reader, document = TAKEN[name]
+    READERS[reader](text_of(document))
+
+
+def test_strokes_are_drawn_by_priority_and_equal_ones_in_their_order():
+    given = [{**STROKE, "priority": p, "width": w} for p, w in ((2, 1), (1, 2), (2, 3), (-1, 4))]
+    found = texture.read(io.BytesIO(text_of(tile(strokes=given))), "t")
+    assert found.strokes.widths.tolist() == [4, 2, 1, 3] and found.priorities.tolist() == [-1, 1, 2, 2]
