@@ -46,7 +46,7 @@ cdef class Finder:
     cdef readonly Scene scene
     cdef int row0, row1
     cdef bint closed
-    cdef double reach
+    cdef double reach, radius, from_x, from_y
     cdef int* start
     cdef int* count
     cdef int* pool_node
@@ -63,6 +63,7 @@ cdef class Finder:
     cdef double* alpha
     cdef int alpha_size
     cdef void push(self, int node, double key) noexcept nogil
+    cdef bint worth(self, int node, double length) noexcept nogil
     cdef void first_bends(self, double qx, double qy, double reach) noexcept nogil
     cdef void spread(self, double reach) noexcept nogil
     cdef int bends_of(self, int i, int j) noexcept nogil
