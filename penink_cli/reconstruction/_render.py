@@ -36,7 +36,8 @@ class Desk:
     node_mask: cython.p_ulonglong
     used: cython.int
     size: cython.int
-    kind: cython.int[16]  # of each sample's attenuation: 0 or 1 throughout the tile, or 2 for mixed
+    open: cython.int[8]  # for each row of pixels the set of samples that count fully throughout
+    mixed: cython.int[16]  # for each sample the set of rows in which its attenuation is mixed
 
     def __init__(self):
         k: cython.int
@@ -83,81 +84,142 @@ class Desk:
 @cython.cfunc
 @cython.nogil
 @cython.exceptval(check=False)
-def measure(out: cython.pointer[real], ux: cython.pointer[real], uy: cython.pointer[real], ny: cython.int,
-            x: real, y: real) -> cython.void:  # fmt: skip
-    """Distance of each pixel of the tile from a point."""
-    r: cython.int
-    c: cython.int
+def measure(
+    out: cython.pointer[real],
+    bits: cython.pointer[real],
+    seen: cython.ulonglong,
+    ux: cython.pointer[real],
+    uy: cython.pointer[real],
+    ny: cython.int,
+    x: real,
+    y: real,
+) -> cython.void:
+    """Distance of each pixel of the tile from a node, FAR from where it is not seen."""
+    r: cython.Py_ssize_t
+    c: cython.Py_ssize_t
+    far: real = FAR
     across: real[8]
-    squares: real[64]
+    mine: real[8]
     down: real
+    veil: cython.pointer[real]
     for c in range(8):
         across[c] = (ux[c] - x) * (ux[c] - x)
     for r in range(ny):
+        veil = bits + 8 * (~(seen >> (8 * r)) & 255)
         down = (uy[r] - y) * (uy[r] - y)
         for c in range(8):
-            squares[8 * r + c] = across[c] + down
-    for r in range(8 * ny):
-        if real is cython.float:
-            out[r] = sqrtf(squares[r])
-        else:
-            out[r] = sqrt(squares[r])
+            if real is cython.float:
+                mine[c] = sqrtf(across[c] + down) + veil[c] * far
+            else:
+                mine[c] = sqrt(across[c] + down) + veil[c] * far
+        memcpy(out + 8 * r, mine, 8 * cython.sizeof(out[0]))
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def fade(
+    alpha: cython.pointer[real],
+    bits: cython.pointer[real],
+    hidden: cython.ulonglong,
+    ux: cython.pointer[real],
+    uy: cython.pointer[real],
+    ny: cython.int,
+    x: real,
+    y: real,
+    bend: cython.pointer[real],
+    length: real,
+) -> cython.void:
+    """Equation 4 for one sample, in the rows where pixels do not see it; lengths in units of the radius.
+
+    bend: distance of each pixel to a bend, which is `length` from the sample. With u = 1 − detour / r clamped to
+    0 … 1 the attenuation 1 − S(1 − u) is S(u), and as no path is shorter than the straight line only 0 needs a test.
+    """
+    r: cython.Py_ssize_t
+    c: cython.Py_ssize_t
+    byte: cython.int
+    u: real
+    down: real
+    zero: real = 0
+    three: real = 3
+    across: real[8]
+    mine: real[8]
+    veil: cython.pointer[real]
+    bare: cython.pointer[real]
+    near: cython.pointer[real]
+    length -= 1
+    for c in range(8):
+        across[c] = (ux[c] - x) * (ux[c] - x)
+    for r in range(ny):
+        byte = (hidden >> (8 * r)) & 255
+        if byte == 0:
+            continue
+        veil = bits + 8 * byte
+        bare = bits + 8 * (byte ^ 255)
+        near = bend + 8 * r
+        down = (uy[r] - y) * (uy[r] - y)
+        for c in range(8):
+            if real is cython.float:
+                u = sqrtf(across[c] + down) - (near[c] + length)
+            else:
+                u = sqrt(across[c] + down) - (near[c] + length)
+            u = u if u > zero else zero
+            mine[c] = u * u * (three - (u + u)) * veil[c] + bare[c]
+        memcpy(alpha + 8 * r, mine, 8 * cython.sizeof(alpha[0]))
 
 
 @cython.cfunc
 @cython.nogil
 @cython.exceptval(check=False)
 def attenuate(desk: Desk, tile: Tile, ux: cython.pointer[real], uy: cython.pointer[real], radius: real) -> cython.void:
-    """Equation 4 for every sample and pixel of a tile, from what the tile sees and the bends of the hidden samples."""
+    """Equation 4 for every sample and pixel of a tile, from what the tile sees and the bends of the hidden samples.
+
+    ux, uy: the pixels, relative to the cell and in units of the radius.
+    """
     s: cython.int
-    k: cython.int
+    k: cython.Py_ssize_t
     m: cython.int
     at: cython.int
     end: cython.int
     node: cython.int
     slot: cython.int
     v: cython.int
-    touched: cython.bint
+    byte: cython.int
+    bends: cython.int
+    first: cython.int = 0
     limit: cython.double
     d: cython.double
     t: real
-    zero: real = 0
-    one: real = 1
-    three: real = 3
-    far: real = FAR
-    veil: real[64]
-    row_size: cython.size_t = 8 * cython.sizeof(ux[0])
-    length: real
+    length: real = 0
     row: cython.Py_ssize_t
     hidden: cython.ulonglong
     seen: cython.ulonglong
-    x: real
-    y: real
+    whole: cython.int = 255 >> (8 - tile.nx)
     bits: cython.pointer[real]
-    all_alpha: cython.pointer[real]
+    nodes: cython.pointer[real]
     alpha: cython.pointer[real]
     near: cython.pointer[real]
     best: real[64]
-    straight: real[64]
     ny: cython.int = tile.ny
     n: cython.int = 8 * ny
     desk.used = 0
+    for k in range(ny):
+        desk.open[k] = 0xFFFF
     if real is cython.float:
         bits = desk.bits_single
-        all_alpha = desk.alpha_single
     else:
         bits = desk.bits
-        all_alpha = desk.alpha
     for s in range(16):
         hidden = tile.hidden[s]
+        desk.mixed[s] = 0
         if hidden == 0:
-            desk.kind[s] = 1
             continue
-        touched = False
+        bends = 0
         limit = tile.farthest(tile.column[s & 3], tile.row[s >> 2]) + radius
         at = tile.finder.bends_of(tile.row[s >> 2], tile.column[s & 3])
         row = cython.cast(cython.Py_ssize_t, tile.row[s >> 2] - tile.finder.row0) * tile.scene.width
         end = at + tile.finder.count[row + tile.column[s & 3]]
+        near = cython.NULL
         for m in range(at, end):
             d = tile.finder.pool_length[m]
             if d >= limit:
@@ -175,53 +237,52 @@ def attenuate(desk: Desk, tile: Tile, ux: cython.pointer[real], uy: cython.point
                 slot = desk.another_node(seen)
                 tile.node_place[node] = slot
                 if real is cython.float:
-                    near = desk.nodes_single + 64 * slot
+                    nodes = desk.nodes_single
                 else:
-                    near = desk.nodes + 64 * slot
-                x = tile.scene.vx[v] - tile.cx
-                y = tile.scene.vy[v] - tile.cy
-                measure(near, ux, uy, ny, x, y)
-                for k in range(ny):
-                    memcpy(veil + 8 * k, bits + 8 * (~(seen >> (8 * k)) & 255), row_size)
-                for k in range(n):
-                    near[k] += veil[k] * far
+                    nodes = desk.nodes
+                measure(
+                    nodes + 64 * slot, bits, seen, ux, uy, ny,
+                    (tile.scene.vx[v] - tile.cx) / radius, (tile.scene.vy[v] - tile.cy) / radius,
+                )  # fmt: skip
             slot = tile.node_place[node]
             if slot < 0 or not (desk.node_mask[slot] & hidden):
                 continue
             if real is cython.float:
-                near = desk.nodes_single + 64 * slot
+                nodes = desk.nodes_single + 64 * slot
             else:
-                near = desk.nodes + 64 * slot
-            length = d
-            if touched:
+                nodes = desk.nodes + 64 * slot
+            if bends == 0:
+                first = slot
+                length = d / radius
+            else:
+                if bends == 1:
+                    near = nodes + 64 * (first - slot)
+                    for k in range(n):
+                        best[k] = near[k] + length
+                length = d / radius
                 for k in range(n):
-                    t = near[k] + length
+                    t = nodes[k] + length
                     best[k] = t if t < best[k] else best[k]
-            else:
-                touched = True
-                for k in range(n):
-                    best[k] = near[k] + length
-        alpha = all_alpha + 64 * s
-        if touched:
-            desk.kind[s] = 2
-            x = tile.sx[s]
-            y = tile.sy[s]
-            measure(straight, ux, uy, ny, x, y)
-            for k in range(n):
-                t = (best[k] - straight[k]) / radius
-                t = t if t < one else one
-                t = t if t > zero else zero
-                best[k] = one - t * t * (three - (t + t))
-            for k in range(ny):
-                memcpy(veil + 8 * k, bits + 8 * ((hidden >> (8 * k)) & 255), row_size)
-            for k in range(n):
-                alpha[k] = (one - veil[k]) + veil[k] * best[k]
-        elif (tile.all_hidden >> s) & 1:
-            desk.kind[s] = 0
+            bends += 1
+        if real is cython.float:
+            alpha = desk.alpha_single + 64 * s
+            nodes = desk.nodes_single
         else:
-            desk.kind[s] = 2
-            for k in range(ny):
-                memcpy(alpha + 8 * k, bits + 8 * (~(hidden >> (8 * k)) & 255), row_size)
+            alpha = desk.alpha + 64 * s
+            nodes = desk.nodes
+        for k in range(ny):
+            byte = (hidden >> (8 * k)) & 255
+            if byte:
+                desk.open[k] &= ~(1 << s)
+                if bends:
+                    desk.mixed[s] |= 1 << k
+                elif byte != whole:
+                    desk.mixed[s] |= 1 << k
+                    memcpy(alpha + 8 * k, bits + 8 * (byte ^ 255), 8 * cython.sizeof(alpha[0]))
+        if bends == 1:
+            fade(alpha, bits, hidden, ux, uy, ny, tile.sx[s] / radius, tile.sy[s] / radius, nodes + 64 * first, length)
+        elif bends:
+            fade(alpha, bits, hidden, ux, uy, ny, tile.sx[s] / radius, tile.sy[s] / radius, best, 0)
 
 
 @cython.cfunc
@@ -231,6 +292,7 @@ def add_up(
     desk: Desk,
     f: cython.pointer[real],
     kx: cython.pointer[real],
+    stride: cython.Py_ssize_t,
     ky: cython.pointer[real],
     ny: cython.int,
     top: cython.pointer[real],
@@ -238,62 +300,67 @@ def add_up(
 ) -> cython.void:
     """Numerator and denominator of equation 5 for every pixel.
 
-    f: the 16 samples. kx: 4 × 8, weights of the tile's columns. ky: 8 × 4, of its rows. Samples that count fully
-    throughout the tile are summed as separable, those that do not count at all are left out. The sums are kept in local
+    f: the 16 samples. kx: 4 × stride, weights of the tile's columns first. ky: 8 × 4, of its rows. In each row of pixels the samples
+    that count fully are summed as separable, those that do not count at all are left out. The sums are kept in local
     arrays: nothing can alias them, so the loops vectorise.
     """
-    s: cython.int
-    i: cython.int
-    j: cython.int
-    r: cython.int
-    c: cython.int
+    s: cython.Py_ssize_t
+    i: cython.Py_ssize_t
+    j: cython.Py_ssize_t
+    r: cython.Py_ssize_t
+    c: cython.Py_ssize_t
     w: real
     v: real
-    one: real
     y: real
     alpha: cython.pointer[real]
     all_alpha: cython.pointer[real]
-    mine: real[32]
+    bits: cython.pointer[real]
+    mask: cython.pointer[real]
+    kx1: cython.pointer[real] = kx + stride
+    kx2: cython.pointer[real] = kx1 + stride
+    kx3: cython.pointer[real] = kx2 + stride
+    column: cython.pointer[real]
     rows: real[4]
     ones: real[4]
     t: real[64]
     b: real[64]
     if real is cython.float:
         all_alpha = desk.alpha_single
+        bits = desk.bits_single
     else:
         all_alpha = desk.alpha
-    for s in range(16):
-        mine[s] = f[s] if desk.kind[s] == 1 else 0
-        mine[16 + s] = 1 if desk.kind[s] == 1 else 0
+        bits = desk.bits
     for r in range(ny):
         for i in range(4):
-            v = 0
-            one = 0
-            for j in range(4):
-                y = ky[4 * r + j]
-                v += y * mine[4 * j + i]
-                one += y * mine[16 + 4 * j + i]
-            rows[i] = v
-            ones[i] = one
+            rows[i] = 0
+            ones[i] = 0
+        for j in range(4):
+            y = ky[4 * r + j]
+            mask = bits + 8 * ((desk.open[r] >> (4 * j)) & 15)
+            for i in range(4):
+                w = y * mask[i]
+                ones[i] += w
+                rows[i] += w * f[4 * j + i]
         for c in range(8):
-            t[8 * r + c] = rows[0] * kx[c] + rows[1] * kx[8 + c] + rows[2] * kx[16 + c] + rows[3] * kx[24 + c]
-            b[8 * r + c] = ones[0] * kx[c] + ones[1] * kx[8 + c] + ones[2] * kx[16 + c] + ones[3] * kx[24 + c]
+            t[8 * r + c] = rows[0] * kx[c] + rows[1] * kx1[c] + rows[2] * kx2[c] + rows[3] * kx3[c]
+            b[8 * r + c] = ones[0] * kx[c] + ones[1] * kx1[c] + ones[2] * kx2[c] + ones[3] * kx3[c]
     for s in range(16):
-        if desk.kind[s] != 2:
+        if desk.mixed[s] == 0:
             continue
-        i = 8 * (s & 3)
+        column = kx + stride * (s & 3)
         j = s >> 2
         v = f[s]
-        alpha = all_alpha + 64 * s
         for r in range(ny):
+            if not (desk.mixed[s] >> r) & 1:
+                continue
             y = ky[4 * r + j]
+            alpha = all_alpha + 64 * s + 8 * r
             for c in range(8):
-                w = y * kx[i + c] * alpha[8 * r + c]
+                w = y * column[c] * alpha[c]
                 b[8 * r + c] += w
                 t[8 * r + c] += w * v
-    for r in range(8 * ny):
-        top[r] = t[r]
-        bottom[r] = b[r]
+    memcpy(top, t, 8 * ny * cython.sizeof(t[0]))
+    memcpy(bottom, b, 8 * ny * cython.sizeof(b[0]))
 
 
 @cython.cfunc
@@ -307,6 +374,7 @@ def blend(
     xb: cython.pointer[real],
     yc: cython.pointer[real],
     yb: cython.pointer[real],
+    stride: cython.Py_ssize_t,
     radius: real,
     only_b: cython.bint,
     out: cython.pointer[real],
@@ -319,7 +387,6 @@ def blend(
     f: real[16]
     ux: real[8]
     uy: real[8]
-    kx: real[32]
     top: real[64]
     bottom: real[64]
     top_b: real[64]
@@ -333,17 +400,15 @@ def blend(
     zero: real = 0
     one: real = 1
     three: real = 3
-    for c in range(8):  # columns that the tile lacks repeat its last
-        k = c if c < tile.nx else tile.nx - 1
-        ux[c] = tile.px[k] - tile.cx
+    for c in range(8):  # beyond the tile's own columns come those of the next; what they give is not used
+        ux[c] = (tile.px[c] - tile.cx) / radius
     for k in range(tile.ny):
-        uy[k] = tile.py[k] - tile.cy
+        uy[k] = (tile.py[k] - tile.cy) / radius
     for s in range(16):
         f[s] = samples[cython.cast(cython.Py_ssize_t, tile.row[s >> 2]) * tile.scene.width + tile.column[s & 3]]
     attenuate(desk, tile, ux, uy, radius)
     if not only_b:
-        columns(kx, xc, tile.nx)
-        add_up(desk, f, kx, yc, tile.ny, top, bottom)
+        add_up(desk, f, xc, stride, yc, tile.ny, top, bottom)
         low = 0
         for k in range(n):
             low += 1 if bottom[k] < half else 0
@@ -352,8 +417,7 @@ def blend(
                 value[k] = top[k] / bottom[k]
             memcpy(out, value, n * cython.sizeof(value[0]))
             return
-    columns(kx, xb, tile.nx)
-    add_up(desk, f, kx, yb, tile.ny, top_b, bottom_b)
+    add_up(desk, f, xb, stride, yb, tile.ny, top_b, bottom_b)
     low = 0
     for k in range(n):
         low += 1 if bottom_b[k] < threshold else 0
@@ -372,13 +436,13 @@ def blend(
         return
     # Starved pixels: plain convolution, across the edges.
     for s in range(16):
-        desk.kind[s] = 1
+        desk.mixed[s] = 0
+    for k in range(tile.ny):
+        desk.open[k] = 0xFFFF
     if only_b:
-        columns(kx, xb, tile.nx)
-        add_up(desk, f, kx, yb, tile.ny, top, bottom)
+            add_up(desk, f, xb, stride, yb, tile.ny, top, bottom)
     else:
-        columns(kx, xc, tile.nx)
-        add_up(desk, f, kx, yc, tile.ny, top, bottom)
+        add_up(desk, f, xc, stride, yc, tile.ny, top, bottom)
     for k in range(n):
         t = bottom_b[k] / threshold
         if t <= zero:
@@ -388,110 +452,6 @@ def blend(
         else:
             w = t * t * (three - (t + t))
             out[k] = w * value[k] + (one - w) * top[k]
-
-
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def columns(kx: cython.pointer[real], weights: cython.pointer[real], nx: cython.int) -> cython.void:
-    """Turn the taps of a tile's columns from (n, 4) into 4 × 8, the last column repeated."""
-    c: cython.int
-    k: cython.int
-    i: cython.int
-    for c in range(8):
-        k = c if c < nx else nx - 1
-        for i in range(4):
-            kx[8 * i + c] = weights[4 * k + i]
-
-
-def expand(
-    samples: real[:, ::1], begin: cython.int, x_first: cython.int[::1], xw: real[:, ::1], out: real[:, ::1]
-) -> None:
-    """The horizontal half of the separable pass, for the rows of samples from `begin` on, clamped, as many as out has.
-
-    xw: (4, n) weights of each column of output. out: (rows, n).
-    """
-    row: cython.Py_ssize_t
-    x: cython.Py_ssize_t
-    i: cython.Py_ssize_t
-    j: cython.int
-    n: cython.Py_ssize_t = out.shape[1]
-    w: cython.int = cython.cast(cython.int, samples.shape[1])
-    h: cython.int = cython.cast(cython.int, samples.shape[0])
-    stop: cython.Py_ssize_t
-    f0: real
-    f1: real
-    f2: real
-    f3: real
-    with cython.nogil:
-        for row in range(out.shape[0]):
-            i = begin + row
-            i = 0 if i < 0 else (h - 1 if i >= h else i)
-            x = 0
-            while x < n:
-                j = x_first[x]
-                stop = x + 1
-                while stop < n and x_first[stop] == j:
-                    stop += 1
-                f0 = samples[i, 0 if j < 0 else (w - 1 if j >= w else j)]
-                f1 = samples[i, 0 if j < -1 else (w - 1 if j + 1 >= w else j + 1)]
-                f2 = samples[i, 0 if j < -2 else (w - 1 if j + 2 >= w else j + 2)]
-                f3 = samples[i, 0 if j < -3 else (w - 1 if j + 3 >= w else j + 3)]
-                while x < stop:
-                    out[row, x] = f0 * xw[0, x] + f1 * xw[1, x] + f2 * xw[2, x] + f3 * xw[3, x]
-                    x += 1
-
-
-def combine(
-    expanded: real[:, ::1],
-    begin: cython.int,
-    y_first: cython.int[::1],
-    yw: real[:, ::1],
-    maxval: real,
-    out: stored[:, ::1],
-) -> None:
-    """The vertical half: every row of output from four rows expanded, of which the first is sample row `begin`."""
-    y: cython.Py_ssize_t
-    i: cython.Py_ssize_t
-    with cython.nogil:
-        for y in range(out.shape[0]):
-            i = y_first[y] - begin
-            combine_row(
-                cython.address(expanded[i, 0]), cython.address(expanded[i + 1, 0]),
-                cython.address(expanded[i + 2, 0]), cython.address(expanded[i + 3, 0]),
-                yw[y, 0], yw[y, 1], yw[y, 2], yw[y, 3], maxval, out.shape[1], cython.address(out[y, 0]),
-            )  # fmt: skip
-
-
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def combine_row(
-    f0: cython.pointer[real],
-    f1: cython.pointer[real],
-    f2: cython.pointer[real],
-    f3: cython.pointer[real],
-    w0: real,
-    w1: real,
-    w2: real,
-    w3: real,
-    maxval: real,
-    n: cython.Py_ssize_t,
-    out: cython.pointer[stored],
-) -> cython.void:
-    """One row: Σ w f, stored as `keep` stores."""
-    x: cython.Py_ssize_t
-    v: real
-    half: real = 0.5
-    zero: real = 0
-    for x in range(n):
-        v = f0[x] * w0 + f1[x] * w1 + f2[x] * w2 + f3[x] * w3
-        if stored is cython.double:
-            out[x] = v
-        else:
-            v = v if v > zero else zero
-            v = v if v < maxval else maxval
-            out[x] = cython.cast(cython.int, v + half)
 
 
 def retouch(
@@ -541,9 +501,9 @@ def retouch(
                     continue
                 blend(
                     desk, tile, cython.address(samples[0, 0]),
-                    cython.address(xc[x_begin[b], 0]), cython.address(xb[x_begin[b], 0]),
+                    cython.address(xc[0, x_begin[b]]), cython.address(xb[0, x_begin[b]]),
                     cython.address(yc[y_begin[a], 0]), cython.address(yb[y_begin[a], 0]),
-                    radius, only_b, values,
+                    xc.shape[1], radius, only_b, values,
                 )  # fmt: skip
                 if stored is cython.double:
                     for r in range(ny):

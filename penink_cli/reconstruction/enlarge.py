@@ -17,10 +17,10 @@ import numpy.typing as npt
 
 from penink_cli.errors import ParameterError
 from penink_cli.model import EdgeList, Floats, GreyImage
-from penink_cli.reconstruction import _paths, _render, _tile, _weights
+from penink_cli.reconstruction import _paths, _render, _separable, _tile, _weights
 from penink_cli.reconstruction import threads as threading
 from penink_cli.reconstruction.kernels import is_bspline, taps
-from penink_cli.reconstruction.lattice import Axis, axis, centres
+from penink_cli.reconstruction.lattice import TILE, Axis, axis, centres
 from penink_cli.reconstruction.paths import Paths, reach, spill
 from penink_cli.reconstruction.soften import soften as soften_bands
 from penink_cli.reconstruction.soften import source_window
@@ -176,9 +176,10 @@ class _Enlargement:
         x, y = self.x, self.y
         # Whole tiles may be more than the window: then bands are cut out of arrays of their own.
         self.into = into if (x.begin, y.begin, x.count, y.count) == self.window else None
-        plain = "bspline" if self.only_b else "cubic"
-        self.across = np.ascontiguousarray(getattr(x.taps, plain).T, self.real)
-        self.x_taps = x.taps.cubic.astype(self.real), x.taps.bspline.astype(self.real)
+        # The last tile may have fewer than 8 columns, and its arithmetic has not.
+        self.where = np.append(x.taps.where, x.taps.where[-1:].repeat(TILE))
+        self.x_taps = [np.zeros((4, x.count + TILE), self.real) for _ in range(2)]
+        self.x_taps[0][:, : x.count], self.x_taps[1][:, : x.count] = x.taps.cubic.T, x.taps.bspline.T
         self.y_taps = y.taps.cubic.astype(self.real), y.taps.bspline.astype(self.real)
         self.down = self.y_taps[self.only_b]
         rows = max(1, min(BAND // x.count, -(-y.count // (4 * threads))))
@@ -195,15 +196,15 @@ class _Enlargement:
         first = y.taps.first[begin:end]
         source, last = int(first[0]), int(first[-1]) + 4
         expanded = np.empty((last - source, x.count), self.real)
-        _render.expand(self.samples, source, x.taps.first, self.across, expanded)
+        _separable.expand(self.samples, source, x.taps.first, self.x_taps[self.only_b], expanded)
         out = np.empty((end - begin, x.count), self.stored) if self.into is None else self.into[begin:end]
-        _render.combine(expanded, source, first, self.down[begin:end], self.maxval, out)
+        _separable.combine(expanded, source, first, self.down[begin:end], self.maxval, out)
         if not self.paths.empty:
             h = len(self.samples)
             finder = self.paths.finder(closed=True, rows=(min(max(source, 0), h - 1), max(1, min(last, h))))
             _render.retouch(
                 _tile.Tile(finder, x.step, y.step, 1 + spill(self.radius)), _render.Desk(), self.samples,
-                x.taps.where, *self.x_taps, x.cell, x.first,
+                self.where, *self.x_taps, x.cell, x.first,
                 y.taps.where[begin:end], self.y_taps[0][begin:end], self.y_taps[1][begin:end],
                 y.cell[a:b], y.first[a : b + 1] - y.first[a],
                 self.radius, self.only_b, self.maxval, out,
@@ -256,4 +257,4 @@ class _Reduction:
         return np.floor(np.clip(out, 0.0, self.maxval) + 0.5).astype(self.stored)
 
 
-COMPILED = _paths.COMPILED and _render.COMPILED and _tile.COMPILED and _weights.COMPILED
+COMPILED = _paths.COMPILED and _render.COMPILED and _separable.COMPILED and _tile.COMPILED and _weights.COMPILED

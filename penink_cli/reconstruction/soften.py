@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from penink_cli.reconstruction import _render
+from penink_cli.reconstruction import _separable
 from penink_cli.reconstruction.kernels import Taps, taps
 from penink_cli.reconstruction.lattice import centres
 
@@ -63,9 +63,9 @@ def soften(
             continue
         begin, end = int(y_first[done]), int(y_first[ready - 1]) + y.cubic.shape[1]
         expanded = np.empty((end - begin, len(x.first)))
-        _render.expand(kept, begin - start, x_first, across, expanded)
+        _separable.expand(kept, begin - start, x_first, across, expanded)
         out = np.empty((ready - done, len(x.first)), stored)
-        _render.combine(expanded, begin, y_first[done:ready], y.cubic[done:ready], maxval, out)
+        _separable.combine(expanded, begin, y_first[done:ready], y.cubic[done:ready], maxval, out)
         done = ready
         if done < len(y_first):
             drop = max(0, int(y_first[done]) - start)
