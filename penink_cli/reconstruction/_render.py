@@ -36,8 +36,8 @@ class Desk:
     node_mask: cython.p_ulonglong
     used: cython.int
     size: cython.int
-    open: cython.int[8]  # for each row of pixels the set of samples that count fully throughout
-    mixed: cython.int[16]  # for each sample the set of rows in which its attenuation is mixed
+    shaded: cython.uchar[16]  # for each sample the set of rows of pixels of which some do not see it
+    mixed: cython.uchar[16]  # those of them where its attenuation is not zero throughout
 
     def __init__(self):
         k: cython.int
@@ -79,6 +79,18 @@ class Desk:
         self.node_mask[slot] = seen
         self.used = slot + 1
         return slot
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def rows_of(pixels: cython.ulonglong) -> cython.int:
+    """The rows that a set of pixels touches: the bytes of the word that are not zero, gathered by a multiplication."""
+    low: cython.ulonglong = 0x7F7F7F7F7F7F7F7F
+    first: cython.ulonglong = 0x0101010101010101
+    gather: cython.ulonglong = 0x0102040810204080
+    pixels = (((pixels & low) + low) | pixels) >> 7 & first
+    return cython.cast(cython.int, (pixels * gather) >> 56)
 
 
 @cython.cfunc
@@ -194,24 +206,21 @@ def attenuate(desk: Desk, tile: Tile, ux: cython.pointer[real], uy: cython.point
     row: cython.Py_ssize_t
     hidden: cython.ulonglong
     seen: cython.ulonglong
-    whole: cython.int = 255 >> (8 - tile.nx)
     bits: cython.pointer[real]
     nodes: cython.pointer[real]
     alpha: cython.pointer[real]
     near: cython.pointer[real]
     best: real[64]
     ny: cython.int = tile.ny
-    n: cython.int = 8 * ny
+    n: cython.Py_ssize_t = 8 * ny
     desk.used = 0
-    for k in range(ny):
-        desk.open[k] = 0xFFFF
     if real is cython.float:
         bits = desk.bits_single
     else:
         bits = desk.bits
     for s in range(16):
         hidden = tile.hidden[s]
-        desk.mixed[s] = 0
+        desk.mixed[s] = desk.shaded[s] = 0
         if hidden == 0:
             continue
         bends = 0
@@ -270,16 +279,13 @@ def attenuate(desk: Desk, tile: Tile, ux: cython.pointer[real], uy: cython.point
         else:
             alpha = desk.alpha + 64 * s
             nodes = desk.nodes
-        for k in range(ny):
-            byte = (hidden >> (8 * k)) & 255
-            if byte:
-                desk.open[k] &= ~(1 << s)
-                if bends:
-                    desk.mixed[s] |= 1 << k
-                elif byte != whole:
-                    desk.mixed[s] |= 1 << k
-                    memcpy(alpha + 8 * k, bits + 8 * (byte ^ 255), 8 * cython.sizeof(alpha[0]))
-        if bends == 1:
+        desk.shaded[s] = desk.mixed[s] = rows_of(hidden)
+        if bends == 0:
+            desk.mixed[s] &= rows_of(~hidden & tile.pixels())
+            for k in range(ny):
+                byte = (hidden >> (8 * k)) & 255
+                memcpy(alpha + 8 * k, bits + 8 * (byte ^ 255), 8 * cython.sizeof(alpha[0]))
+        elif bends == 1:
             fade(alpha, bits, hidden, ux, uy, ny, tile.sx[s] / radius, tile.sy[s] / radius, nodes + 64 * first, length)
         elif bends:
             fade(alpha, bits, hidden, ux, uy, ny, tile.sx[s] / radius, tile.sy[s] / radius, best, 0)
@@ -324,6 +330,8 @@ def add_up(
     ones: real[4]
     t: real[64]
     b: real[64]
+    shaded: cython.uint[4]  # four samples a word
+    memcpy(shaded, desk.shaded, 16)
     if real is cython.float:
         all_alpha = desk.alpha_single
         bits = desk.bits_single
@@ -336,7 +344,7 @@ def add_up(
             ones[i] = 0
         for j in range(4):
             y = ky[4 * r + j]
-            mask = bits + 8 * ((desk.open[r] >> (4 * j)) & 15)
+            mask = bits + 8 * (~((((shaded[j] >> r) & 0x01010101) * 0x10204080) >> 28) & 15)
             for i in range(4):
                 w = y * mask[i]
                 ones[i] += w
@@ -380,10 +388,10 @@ def blend(
     out: cython.pointer[real],
 ) -> cython.void:
     """The values of a tile that `see` found edges in; samples: unpadded, row by row. xc …: (n, 4) from the tile on."""
-    k: cython.int
-    c: cython.int
+    k: cython.Py_ssize_t
+    c: cython.Py_ssize_t
     s: cython.int
-    n: cython.int = 8 * tile.ny
+    n: cython.Py_ssize_t = 8 * tile.ny
     f: real[16]
     ux: real[8]
     uy: real[8]
@@ -436,9 +444,7 @@ def blend(
         return
     # Starved pixels: plain convolution, across the edges.
     for s in range(16):
-        desk.mixed[s] = 0
-    for k in range(tile.ny):
-        desk.open[k] = 0xFFFF
+        desk.mixed[s] = desk.shaded[s] = 0
     if only_b:
             add_up(desk, f, xb, stride, yb, tile.ny, top, bottom)
     else:
@@ -480,8 +486,8 @@ def retouch(
     """
     a: cython.Py_ssize_t
     b: cython.Py_ssize_t
-    r: cython.int
-    c: cython.int
+    r: cython.Py_ssize_t
+    c: cython.Py_ssize_t
     nx: cython.int
     ny: cython.int
     v: real

@@ -20,6 +20,26 @@ ROW = cython.declare(cython.ulonglong, 0xFF)
 COLUMN = cython.declare(cython.ulonglong, 0x0101010101010101)
 SLACK = cython.declare(cython.float, 1e-5)  # of the quick tests, in samples: ten times the worst rounding of a float
 NEAR = cython.declare(cython.float, 2e-5)  # of the masks, in pixels: ten times the worst rounding of a float
+BIT = cython.declare(cython.int[16])  # 1 << k: shifting by a vector of counts is dear without AVX2
+RAMP = cython.declare(cython.float[8])  # 0 … 7
+ROWS = cython.declare(cython.ulonglong[10])  # the first row of pixels from column k on, none from 8 on
+COLUMNS = cython.declare(cython.ulonglong[10])  # the first column from row k on
+
+
+@cython.cfunc
+def tabulate() -> cython.void:
+    """Fill the tables above."""
+    k: cython.int
+    for k in range(16):
+        BIT[k] = 1 << k
+    for k in range(8):
+        RAMP[k] = k
+    for k in range(10):
+        ROWS[k] = (ROW << k) & ROW
+        COLUMNS[k] = COLUMN << (8 * k) if k < 8 else 0
+
+
+tabulate()
 
 
 @cython.final  # calls are direct, and inlined
@@ -330,27 +350,38 @@ class Tile:
     @cython.nogil
     @cython.exceptval(check=False)
     def classify_vertex(self, k: cython.int) -> cython.void:
-        """The samples whose line to a vertex has the whole tile on one side; the loop vectorises."""
-        s: cython.int
-        dx: cython.float
-        dy: cython.float
+        """The samples whose line to a vertex has the whole tile on one side; the inner loop vectorises."""
+        i: cython.Py_ssize_t
+        j: cython.Py_ssize_t
         value: cython.float
         extent: cython.float
+        dy: cython.float
+        my: cython.float
+        high: cython.float
+        bit: cython.int
         positive: cython.int = 0
         negative: cython.int = 0
         x: cython.float = self.lx[k]
         y: cython.float = self.ly[k]
-        mid_x: cython.float = self.mid_x
-        mid_y: cython.float = self.mid_y
         half_x: cython.float = self.half_x
         half_y: cython.float = self.half_y
-        for s in range(16):
-            dx = x - self.sx[s]
-            dy = y - self.sy[s]
-            value = dx * (mid_y - self.sy[s]) - dy * (mid_x - self.sx[s])
-            extent = fabsf(dx) * half_y + fabsf(dy) * half_x
-            positive += (1 << s) if value > extent else 0
-            negative += (1 << s) if -value > extent else 0
+        dx: cython.float[4]
+        mx: cython.float[4]
+        wide: cython.float[4]
+        for i in range(4):
+            dx[i] = x - self.sx[i]
+            mx[i] = self.mid_x - self.sx[i]
+            wide[i] = fabsf(dx[i]) * half_y
+        for j in range(4):
+            dy = y - self.sy[4 * j]
+            my = self.mid_y - self.sy[4 * j]
+            high = fabsf(dy) * half_x
+            for i in range(4):
+                value = dx[i] * my - dy * mx[i]
+                extent = wide[i] + high
+                bit = BIT[4 * j + i]
+                positive += bit if value > extent else 0
+                negative += bit if -value > extent else 0
         self.positive[k] = positive
         self.negative[k] = negative
 
@@ -359,7 +390,7 @@ class Tile:
     @cython.exceptval(check=False)
     def classify_edge(self, k: cython.int) -> cython.void:
         """On which side of an edge the tile and each sample lie."""
-        s: cython.int
+        s: cython.Py_ssize_t
         a: cython.int = self.edge_a[k]
         b: cython.int = self.edge_b[k]
         ax: cython.float = self.lx[a]
@@ -367,6 +398,7 @@ class Tile:
         dx: cython.float = self.lx[b] - ax
         dy: cython.float = self.ly[b] - ay
         value: cython.float
+        bit: cython.int
         unsure: cython.int = 0
         positive: cython.int = 0
         # A far end is rounded coarsely: the slack grows with its distance.
@@ -378,8 +410,9 @@ class Tile:
         self.tile_side[k] = 1 if value > extent else (-1 if -value > extent else 0)
         for s in range(16):
             value = dx * (self.sy[s] - ay) - dy * (self.sx[s] - ax)
-            positive += (1 << s) if value > slack else 0
-            unsure += 0 if fabsf(value) > slack else (1 << s)
+            bit = BIT[s]
+            positive += bit if value > slack else 0
+            unsure += 0 if fabsf(value) > slack else bit
         self.sample_side[k] = positive
         s = 0
         while unsure:
@@ -435,10 +468,12 @@ class Tile:
         low: cython.float = -0.75  # not near a pixel
         high: cython.float = 8.25
         half: cython.float = 0.5
+        one: cython.float = 1
         v: cython.float
         beyond = cython.declare(cython.int[8])
+        offset = cython.declare(cython.float[8])
         near: cython.int = 0
-        j: cython.int
+        j: cython.Py_ssize_t
         m: cython.ulonglong = 0
         if main == 0.0:  # a is b: every pixel is a tie
             return self.exactly(ax, ay, bx, by, from_sample, m, ALL)
@@ -447,23 +482,27 @@ class Tile:
         start = cython.cast(cython.float, -value * main)
         slope = cython.cast(cython.float, -minor * main)
         for j in range(8):
-            v = start + j * slope
+            v = start + RAMP[j] * slope
             v = v if v > low else low
             v = v if v < high else high
-            beyond[j] = cython.cast(cython.int, v + 1)
-            v -= cython.cast(cython.int, v + half)
-            near |= (1 << j) if fabsf(v) < NEAR else 0
+            beyond[j] = cython.cast(cython.int, v + one)
+            offset[j] = fabsf(v - cython.cast(cython.int, v + half))
+            near += 1 if offset[j] < NEAR else 0
         if by_rows:
-            for j in range(8):
-                m |= ((ROW << beyond[j]) & ROW) << (8 * j)
+            m = (
+                ROWS[beyond[0]] | ROWS[beyond[1]] << 8 | ROWS[beyond[2]] << 16 | ROWS[beyond[3]] << 24
+                | ROWS[beyond[4]] << 32 | ROWS[beyond[5]] << 40 | ROWS[beyond[6]] << 48 | ROWS[beyond[7]] << 56
+            )  # fmt: skip
         else:
-            for j in range(8):
-                m |= (COLUMN << (8 * beyond[j]) if beyond[j] < 8 else 0) << j
+            m = (
+                COLUMNS[beyond[0]] | COLUMNS[beyond[1]] << 1 | COLUMNS[beyond[2]] << 2 | COLUMNS[beyond[3]] << 3
+                | COLUMNS[beyond[4]] << 4 | COLUMNS[beyond[5]] << 5 | COLUMNS[beyond[6]] << 6 | COLUMNS[beyond[7]] << 7
+            )  # fmt: skip
         if main < 0.0:
             m = ~m
         if near:
             for j in range(8):
-                if (near >> j) & 1:
+                if offset[j] < NEAR:
                     m = self.exactly(
                         ax,
                         ay,
