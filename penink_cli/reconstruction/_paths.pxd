@@ -28,6 +28,8 @@ cdef class Scene:
     cdef int node_across
     cdef int* node_start
     cdef int* node_sorted
+    cdef double* node_x
+    cdef double* node_y
     cdef int* arc_start
     cdef int* arc_to
     cdef double* arc_length
@@ -63,7 +65,7 @@ cdef class Finder:
     cdef double* alpha
     cdef int alpha_size
     cdef void push(self, int node, double key) noexcept nogil
-    cdef bint worth(self, int node, double length) noexcept nogil
+    cdef bint worth(self, double x, double y, double length) noexcept nogil
     cdef void first_bends(self, double qx, double qy, double reach) noexcept nogil
     cdef void spread(self, double reach) noexcept nogil
     cdef int bends_of(self, int i, int j) noexcept nogil

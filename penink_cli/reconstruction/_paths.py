@@ -150,12 +150,15 @@ class Scene:
         self.node_across = (self.gw >> BLOCK) + 1
         node_start = np.zeros(self.node_across * ((self.gh >> BLOCK) + 1) + 1, np.intc)
         node_sorted = np.empty(max(1, self.n_nodes), np.intc)
+        places = np.empty((2, max(1, self.n_nodes)))
         self.node_start = ints(node_start)
         self.node_sorted = ints(node_sorted)
+        self.node_x = doubles(places[0])
+        self.node_y = doubles(places[1])
         bucket_nodes(self)
         arc_start = np.zeros(self.n_nodes + 1, np.intc)
         self.arc_start = ints(arc_start)
-        self.arrays += [start, entries, nodes, star_start, star, node_start, node_sorted, arc_start]
+        self.arrays += [start, entries, nodes, star_start, star, node_start, node_sorted, places, arc_start]
         with cython.nogil:
             find_arcs(self)
 
@@ -568,7 +571,10 @@ def bucket_nodes(scene: Scene) -> cython.void:
     for n in range(scene.n_nodes - 1, -1, -1):
         k = home(scene, n)
         scene.node_start[k] -= 1
-        scene.node_sorted[scene.node_start[k]] = n
+        k = scene.node_start[k]
+        scene.node_sorted[k] = n
+        scene.node_x[k] = scene.vx[scene.node_vertex[n]]
+        scene.node_y[k] = scene.vy[scene.node_vertex[n]]
 
 
 @cython.cfunc
@@ -766,19 +772,19 @@ class Finder:
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)
-    def worth(self, node: cython.int, length: cython.double) -> cython.bint:
-        """Whether a path of that length, from the sample of this search to a node, can go on to a pixel of the sample's.
+    def worth(self, x: cython.double, y: cython.double, length: cython.double) -> cython.bint:
+        """Whether a path of that length from a sample to a bend, x and y away, can go on to a pixel of the sample's.
 
         A pixel p has a sample s among its 16 where it lies in the square of half side 2 around s, and the path matters
-        where length + |p − v| < |p − s| + r. So length − r must be less than the most that |p − s| − |p − v| comes to in
-        that square: within it at v itself; else, where v is beyond one side, at the point of that side that the mirror
-        image of v is seen through, where the mirror image is; and at the corner where that is off the side. A node left
-        out can be no stage to another: |p − s| − |p − v| falls by no more than the way from node to node.
+        where length + |p − v| < |p − s| + r. So length − r must be less than the most that |p − s| − |p − v| comes to
+        in that square: within it at v itself; else, where v is beyond one side, at the point of that side that the
+        mirror image of v is seen through, where the mirror image is; and at the corner where that is off the side.
+        A node left out is no stage to another: |p − s| − |p − v| falls by no more than the way from node to node.
         It leaves out a third of all bends that the bound by distance alone lets in.
         """
-        x: cython.double = fabs(self.scene.vx[self.scene.node_vertex[node]] - self.from_x)
-        y: cython.double = fabs(self.scene.vy[self.scene.node_vertex[node]] - self.from_y)
         most: cython.double
+        x = fabs(x)
+        y = fabs(y)
         if x <= 2.0 and y <= 2.0:
             most = sqrt(x * x + y * y)
         elif y <= 4.0 - x and x > 2.0:
@@ -794,14 +800,14 @@ class Finder:
     @cython.exceptval(check=False)
     def first_bends(self, qx: cython.double, qy: cython.double, reach: cython.double) -> cython.void:
         """Start a search: note the nodes that the query q sees, within reach."""
-        # A node worth its while is at most so far away along an axis: |v| + |v − corner| ≥ |the corner mirrored at v's x|.
-        window: cython.double = 1.0 + 0.5 * sqrt(reach * reach - 4.0) if self.closed else reach
         row: cython.int
         k: cython.int
         n: cython.int
         x: cython.double
         y: cython.double
         d: cython.double
+        # A node worth its while is at most so far away along an axis: |v| + |v − corner| ≥ |corner mirrored at v's x|.
+        window: cython.double = 1.0 + 0.5 * sqrt(reach * reach - 4.0) if self.closed else reach
         across: cython.int = self.scene.node_across
         c0: cython.int = self.scene.column_of(qx - window) >> BLOCK
         c1: cython.int = (self.scene.column_of(qx + window) >> BLOCK) + 1
@@ -811,16 +817,16 @@ class Finder:
         self.from_y = qy
         for row in range(self.scene.row_of(qy - window) >> BLOCK, (self.scene.row_of(qy + window) >> BLOCK) + 1):
             for k in range(self.scene.node_start[row * across + c0], self.scene.node_start[row * across + c1]):
+                x = self.scene.node_x[k] - qx
+                y = self.scene.node_y[k] - qy
+                if fabs(x) > window or fabs(y) > window:
+                    continue
+                d = sqrt(x * x + y * y)
+                if d >= reach or (self.closed and not self.worth(x, y, d)):
+                    continue
                 n = self.scene.node_sorted[k]
-                x = self.scene.vx[self.scene.node_vertex[n]]
-                y = self.scene.vy[self.scene.node_vertex[n]]
-                d = (x - qx) * (x - qx) + (y - qy) * (y - qy)
-                if d >= reach * reach or (self.closed and not self.worth(n, sqrt(d))):
-                    continue
-                if not self.scene.bends_for(n, qx, qy):
-                    continue
-                if self.scene.sees_vertex(qx, qy, self.scene.node_vertex[n]):
-                    self.push(n, sqrt(d))
+                if self.scene.bends_for(n, qx, qy) and self.scene.sees_vertex(qx, qy, self.scene.node_vertex[n]):
+                    self.push(n, d)
 
     @cython.cfunc
     @cython.nogil
@@ -861,8 +867,12 @@ class Finder:
             self.n_done += 1
             for k in range(self.scene.arc_start[node], self.scene.arc_start[node + 1]):
                 last = key + self.scene.arc_length[k]
-                if last < reach and (not self.closed or self.worth(self.scene.arc_to[k], last)):
-                    self.push(self.scene.arc_to[k], last)
+                if last >= reach:
+                    continue
+                n = self.scene.arc_to[k]
+                i = self.scene.node_vertex[n]
+                if not self.closed or self.worth(self.scene.vx[i] - self.from_x, self.scene.vy[i] - self.from_y, last):
+                    self.push(n, last)
 
     @cython.cfunc
     @cython.nogil

@@ -1,9 +1,8 @@
 # cython: language_level=3, boundscheck=False, wraparound=False, cdivision=True
-"""The reconstruction of whole rows of output: a separable pass everywhere, then the tiles near edges once more.
+"""The reconstruction near edges: equations 4 and 5 for the pixels of one tile after the other.
 
 In double, or for 8-bit output in float, which vectorises twice as wide; what pixels see is exact in both. Wider vectors
-are not worth a second build: with AVX2 500 edges at 128² → 1024² took 5 % less, the separable pass 18 %. Of the time of
-such a call the sums of weights take a quarter, attenuation an eighth, masks and classification of lines a third.
+are not worth a second build: with AVX2 500 scattered edges at 128² → 1024² took 3 % less, the separable pass 18 %.
 """
 
 import cython
@@ -306,9 +305,9 @@ def add_up(
 ) -> cython.void:
     """Numerator and denominator of equation 5 for every pixel.
 
-    f: the 16 samples. kx: 4 × stride, weights of the tile's columns first. ky: 8 × 4, of its rows. In each row of pixels the samples
-    that count fully are summed as separable, those that do not count at all are left out. The sums are kept in local
-    arrays: nothing can alias them, so the loops vectorise.
+    f: the 16 samples. kx: 4 × stride, weights of the columns from the tile's first on. ky: 8 × 4, of its rows. In each
+    row of pixels the samples that count fully are summed as separable, those that do not count at all are left out.
+    The sums are kept in local arrays: nothing can alias them, so the loops vectorise.
     """
     s: cython.Py_ssize_t
     i: cython.Py_ssize_t
@@ -387,7 +386,7 @@ def blend(
     only_b: cython.bint,
     out: cython.pointer[real],
 ) -> cython.void:
-    """The values of a tile that `see` found edges in; samples: unpadded, row by row. xc …: (n, 4) from the tile on."""
+    """The values of a tile that `see` found edges in; samples: unpadded, row by row. xc, xb: as kx of `add_up`."""
     k: cython.Py_ssize_t
     c: cython.Py_ssize_t
     s: cython.int
@@ -481,8 +480,8 @@ def retouch(
 ) -> None:
     """Reconstruct every tile that has an edge within the cells that its samples span.
 
-    x: (n,) positions of the columns, sample units. xc, xb: (n, 4) taps. x_cell, x_begin: (t,), (t + 1,) the cell and
-    the first column of each tile, left to right. The same for y. out: (rows, n).
+    x: (n + 8,) positions of the columns, sample units. xc, xb: (4, n + 8) taps. x_cell, x_begin: (t,), (t + 1,) the
+    cell and the first column of each tile, left to right. For y likewise, but (rows, 4) taps. out: (rows, n).
     """
     a: cython.Py_ssize_t
     b: cython.Py_ssize_t

@@ -178,8 +178,7 @@ class _Enlargement:
         self.into = into if (x.begin, y.begin, x.count, y.count) == self.window else None
         # The last tile may have fewer than 8 columns, and its arithmetic has not.
         self.where = np.append(x.taps.where, x.taps.where[-1:].repeat(TILE))
-        self.x_taps = [np.zeros((4, x.count + TILE), self.real) for _ in range(2)]
-        self.x_taps[0][:, : x.count], self.x_taps[1][:, : x.count] = x.taps.cubic.T, x.taps.bspline.T
+        self.x_taps = self._padded(x.taps.cubic), self._padded(x.taps.bspline)
         self.y_taps = y.taps.cubic.astype(self.real), y.taps.bspline.astype(self.real)
         self.down = self.y_taps[self.only_b]
         rows = max(1, min(BAND // x.count, -(-y.count // (4 * threads))))
@@ -188,6 +187,11 @@ class _Enlargement:
         cuts = [len(y.cell) * k // pieces for k in range(pieces + 1)]
         tasks = (partial(self.band, a, b) for a, b in pairwise(cuts))
         return threading.in_order(tasks, threads)
+
+    def _padded(self, table: Floats) -> Rows:
+        rows = np.zeros((4, len(table) + TILE), self.real)
+        rows[:, : len(table)] = table.T
+        return rows
 
     def band(self, a: int, b: int) -> Rows:
         """Tiles a … b from top to bottom, cut to the window."""
