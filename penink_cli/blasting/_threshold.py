@@ -62,9 +62,10 @@ def _edge_between(
 @cython.ccall
 def runs(
     tone: cython.uchar[:, ::1], width: cython.double, height: cython.double,
-    control: cython.double[:, :, ::1], enters: cython.double[::1], line: cython.int[::1],
+    control: cython.double[:, :, ::1], enters: cython.double[::1], fresh: cython.double[::1], line: cython.int[::1],
     way: cython.uchar[:, ::1], level: cython.uchar[::1],
     cosine: cython.double, sine: cython.double, tile_u: cython.double, tile_v: cython.double,
+    wave: cython.double, turn: cython.double,
     copies: cython.int[:, ::1], columns: cython.int, rows: cython.int,
     ax: cython.double[::1], ay: cython.double[::1], bx: cython.double[::1], by: cython.double[::1],
     first: cython.int[::1], items: cython.int[::1],
@@ -75,11 +76,13 @@ def runs(
     """Append the runs of one screen as polylines; False where the room given does not suffice.
 
     width, height: of the picture in points; tone (m, n) fills it.
-    control: (s, 4, 2) in the screen's u, v; enters: (s,) in 255ths; line: (s,) the line it is part of, -1 for none.
+    control: (s, 4, 2) in the screen's u, v; enters: (s,) in 255ths; fresh: (s,) ink of a point of length;
+        line: (s,) the line it is part of, -1 for none.
     way: (64, lines) how lines give way, 128 for not at all, in 24ths of a point; level: (256,) row of it for a tone.
+    wave, turn: lines wander sideways by about so much, turn radians a point.
     copies: (c, 2) the tiles.
     ax … items: edges in sample units and the squares (columns × rows) they are in.
-    pen: effective width. Lengths drawn are added to ink, blocks of `block` points square.
+    pen: effective width. What is drawn is added to ink, blocks of `block` points square.
     points, ends: size[0] points of size[1] runs, each up to its end; size is brought up to date.
     """
     n: cython.int = tone.shape[1]
@@ -98,6 +101,7 @@ def runs(
     start: cython.int
     last: cython.int
     got: cython.int
+    every: cython.int
     for s in range(control.shape[0]):
         # coefficients of the cubic in u, v
         u0 = control[s, 0, 0]
@@ -121,7 +125,7 @@ def runs(
             # the middle tells whether the stroke can reach the picture
             mx = (du + u1 / 2 + u2 / 4 + u3 / 8) * cosine - (dv + v1 / 2 + v2 / 4 + v3 / 8) * sine
             my = (du + u1 / 2 + u2 / 4 + u3 / 8) * sine + (dv + v1 / 2 + v2 / 4 + v3 / 8) * cosine
-            reach = length / 2 + 4
+            reach = length / 2 + 4 + wave
             if mx < -reach or my < -reach or mx > width + reach or my > height + reach:
                 continue
             total = 0.0
@@ -131,7 +135,10 @@ def runs(
                 u = du + t * (u1 + t * (u2 + t * u3))
                 v = dv + t * (v1 + t * (v2 + t * v3)) + aside
                 if line[s] >= 0:
+                    aim = v
                     v += 0.3 * sin(0.09 * u + 0.03 * v) + 0.2 * sin(0.21 * u - 0.05 * v)
+                    if wave > 0:
+                        v += wave * (0.4 * sin(turn * (u + aim / 3)) + 0.15 * sin(turn * (1.7 * u - aim / 5)))
                 x = u * cosine - v * sine
                 y = u * sine + v * cosine
                 px[i] = x
@@ -149,10 +156,11 @@ def runs(
                         aside += 0.2 * (aim - aside)
             if size[0] + 2 * k + 8 > points.shape[0] or size[1] + k > ends.shape[0]:
                 return False
+            every = 3 if line[s] >= 0 else 1
             if whole:
                 if total > 0:
-                    _polyline(0, k, k, px, py, points, ends, size)
-                    _count(0, k, (length + 0.785 * pen) / (k + 1), width, height, block, px, py, ink)
+                    _polyline(0, k, k, every, px, py, points, ends, size)
+                    _count(0, k, fresh[s] * (length + 0.785 * pen) / (k + 1), 0.0, k, width, height, block, px, py, ink)
                 continue
             start = -1
             last = -1
@@ -177,9 +185,11 @@ def runs(
                                 last, 1, k, step, d, px, py, gx, gy, ax, ay, bx, by, first, items, columns, rows, pen
                             )
                         if tb > ta:
-                            _polyline(ta, tb, k, px, py, points, ends, size)
-                            each = step * (tb - ta) / (last - start + 1)
-                            _count(start, last, each, width, height, block, px, py, ink)
+                            _polyline(ta, tb, k, every, px, py, points, ends, size)
+                            each = fresh[s] * step * (tb - ta) / (last - start + 1)
+                            _count(
+                                start, last, each, step if wave > 0 else 0.0, k, width, height, block, px, py, ink
+                            )
                     start = -1
     return True
 
@@ -188,33 +198,39 @@ def runs(
 @cython.nogil
 @cython.exceptval(check=False)
 def _count(
-    start: cython.int, last: cython.int, each: cython.double, width: cython.double, height: cython.double,
-    block: cython.double, px: cython.p_double, py: cython.p_double, ink: cython.double[:, ::1],
+    start: cython.int, last: cython.int, each: cython.double, step: cython.double, k: cython.int,
+    width: cython.double, height: cython.double, block: cython.double, px: cython.p_double, py: cython.p_double, ink: cython.double[:, ::1],
 ) -> cython.void:  # fmt: skip
-    """Add a run's length to the blocks it passes."""
+    """Add a run's length to the blocks it passes: each of its samples' share, stretched as its piece is if step > 0."""
     j: cython.int
+    i: cython.int
+    share: cython.double
     for j in range(start, last + 1):
         if 0 <= px[j] < width and 0 <= py[j] < height:
-            ink[cython.cast(cython.int, py[j] / block), cython.cast(cython.int, px[j] / block)] += each
+            share = each
+            if step > 0:
+                i = j if j < k else k - 1
+                share *= sqrt((px[i + 1] - px[i]) ** 2 + (py[i + 1] - py[i]) ** 2) / step
+            ink[cython.cast(cython.int, py[j] / block), cython.cast(cython.int, px[j] / block)] += share
 
 
 @cython.cfunc
 @cython.nogil
 @cython.exceptval(check=False)
 def _polyline(
-    ta: cython.double, tb: cython.double, k: cython.int, px: cython.p_double, py: cython.p_double,
+    ta: cython.double, tb: cython.double, k: cython.int, every: cython.int, px: cython.p_double, py: cython.p_double,
     points: cython.double[:, ::1], ends: cython.longlong[::1], size: cython.longlong[::1],
 ) -> cython.void:  # fmt: skip
-    """Append the part of the samples from ta to tb: both ends and every third sample between."""
+    """Append the part of the samples from ta to tb: both ends and each `every`-th sample between."""
     at: cython.longlong = size[0]
-    i: cython.int = 3 * (cython.cast(cython.int, floor(ta / 3)) + 1)
+    i: cython.int = every * (cython.cast(cython.int, floor(ta / every)) + 1)
     _point(ta, k, px, py, points, at)
     at += 1
     while i < tb:
-        if i - ta > 1 and tb - i > 1:
+        if i - ta > 0.5 and tb - i > 0.5:
             _point(i, k, px, py, points, at)
             at += 1
-        i += 3
+        i += every
     _point(tb, k, px, py, points, at)
     size[0] = at + 1
     ends[size[1]] = at + 1

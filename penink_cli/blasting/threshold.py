@@ -16,6 +16,7 @@ import numpy.typing as npt
 from penink_cli.blasting import _threshold, curves
 from penink_cli.blasting.sheet import resample
 from penink_cli.model import EdgeList, Floats, Ints, Strokes, Texture
+from penink_cli.textures.even import direction
 from penink_cli.textures.threshold import WIDENED_PT, Screen, ThresholdTable, table
 
 BLOCK_PT = 9.0
@@ -45,11 +46,6 @@ def _copies(screen: Screen, width: float, height: float) -> npt.NDArray[np.int32
     hi = np.ceil(np.array([u.max() / screen.width, v.max() / screen.height])).astype(int)
     a, b = np.meshgrid(np.arange(lo[0], hi[0] + 1), np.arange(lo[1], hi[1] + 1))
     return np.column_stack([a.ravel(), b.ravel()]).astype(np.int32)
-
-
-def direction(angle: float) -> tuple[float, float]:
-    """Cosine and sine of an angle in degrees, rounded so that every machine has the same."""
-    return round(math.cos(math.radians(angle)), 12), round(math.sin(math.radians(angle)), 12)
 
 
 #: The finest pen, in device pixels with its gain, that is painted as wide as it should be: what is left of a thinner
@@ -82,8 +78,7 @@ def blast_by_threshold(
     for screen, (points, stops) in zip(
         sizes.screens, draw(ink, ends, squares, sizes, width_pt, height_pt, unit, bare=bare), strict=True
     ):
-        c, s = direction(screen.angle)
-        pen = pen_pt or max(sizes.pen_pt * unit - gain * (abs(c) + abs(s)), 0.02)
+        pen = pen_pt or max(sizes.pen_pt * unit - gain * screen.widens, 0.02)
         parts.append(_smooth(*_within(points, stops, width_pt, height_pt), pen))
     control = np.concatenate([points for points, _, _ in parts])
     counts = np.concatenate([count for _, count, _ in parts])
@@ -197,13 +192,14 @@ def draw(
                 points, ends_of, count = np.zeros((room, 2)), np.zeros(room // 2, np.int64), np.zeros(2, np.int64)
                 ink[:] = 0
                 if _threshold.runs(
-                    wanted, w, h, control, screen.enters * 255, screen.line, table.way, screen.level,
-                    c, s, screen.width, screen.height, copies, columns, rows, ax, ay, bx, by, first, items,
+                    wanted, w, h, control, screen.enters * 255, screen.fresh_of_each, screen.line, table.way,
+                    screen.level, c, s, screen.width, screen.height, screen.wave, screen.turn, copies,
+                    columns, rows, ax, ay, bx, by, first, items,
                     table.pen_pt, table.whole, GAP, SHORT, DEEP, BLOCK_PT, ink, points, ends_of, count,
                 ):  # fmt: skip
                     break
                 room *= 4
-            bare *= 1 - np.interp(ink / area, screen.lengths, screen.covers)
+            bare *= 1 - np.minimum(ink / area, 1.0)
             parts.append((points[: count[0]] * unit, ends_of[: count[1]]))
         if left:
             wanted = corrected(tone, bare, area, w, h)

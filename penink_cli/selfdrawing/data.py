@@ -170,6 +170,11 @@ def _is_outlined(trail: Trail, pixels: Floats, strength: Floats | None, choice: 
     return bool((strength[trail[1]] * lengths).sum() >= choice.min_strength * lengths.sum())
 
 
+def is_sent(screen: threshold.Screen) -> bool:
+    """Whether a screen's strokes are sent: a renderer makes lines itself, and repeats what it has."""
+    return screen.layer is None and screen.again is None
+
+
 def tile_bytes(screen: threshold.Screen) -> bytes:
     """Strokes that are not lines: threshold in 255ths, first point, three steps from there, in quarters of a point."""
     control = np.rint(screen.points.reshape(-1, 4, 2) / threshold.GRID_PT).astype(np.int64)

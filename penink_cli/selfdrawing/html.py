@@ -12,7 +12,8 @@ from typing import Any
 
 from penink_cli.model import Illustration
 from penink_cli.selfdrawing import packer
-from penink_cli.selfdrawing.data import LayerData, layers, tile_bytes
+from penink_cli.selfdrawing.data import LayerData, is_sent, layers, tile_bytes
+from penink_cli.textures.threshold import Screen
 
 SOURCES = ("unpack.js", "reconstruct.js", "drawing.js", "data.js", "page.js")
 
@@ -21,7 +22,7 @@ def write(illustration: Illustration, title: str, readable: bool = False) -> byt
     """The page. readable: with the program's comments, not packed."""
     parts = layers(illustration)
     data = b"".join(
-        part.samples + part.edges + b"".join(tile_bytes(s) for s in part.table.screens if s.layer is None)
+        part.samples + part.edges + b"".join(tile_bytes(s) for s in part.table.screens if is_sent(s))
         for part in parts
     )
     program = "\n".join(packer.source(name) for name in SOURCES)
@@ -60,18 +61,23 @@ def _description(layer: LayerData) -> dict[str, Any]:
         "gamma": layer.gamma,
         "pen": round(layer.table.pen_pt, 4),
         "magnification": round(layer.table.magnification, 4),
-        "screens": [
-            [s.layer.angle, s.layer.low, s.layer.high]
-            if s.layer is not None
-            else {
-                "tile": [s.width, s.height],
-                "lengths": [round(v, 4) for v in s.lengths.tolist()],
-                "covers": [round(v, 4) for v in s.covers.tolist()],
-                "whole": layer.table.whole,
-                "strokes": len(s.enters),
-            }
-            for s in layer.table.screens
-        ],
+        "screens": [_screen(s, layer.table.whole) for s in layer.table.screens],
+    }
+
+
+def _screen(screen: Screen, whole: bool) -> Any:
+    if screen.layer is not None:
+        layer = screen.layer
+        return [layer.angle, layer.low, layer.high, screen.wave, screen.turn, round(screen.widens, 4)]
+    if screen.again is not None:
+        return {"again": screen.again}
+    return {
+        "tile": [screen.width, screen.height],
+        "fresh": [round(v, 4) for v in screen.fresh.tolist()],
+        "covers": [round(v, 4) for v in screen.covers.tolist()],
+        "whole": whole,
+        "widens": round(screen.widens, 4),
+        "strokes": len(screen.enters),
     }
 
 

@@ -11,7 +11,7 @@ import math
 
 from penink_cli.model import Illustration
 from penink_cli.selfdrawing import packer
-from penink_cli.selfdrawing.data import LayerData, layers, tile_bytes
+from penink_cli.selfdrawing.data import LayerData, is_sent, layers, tile_bytes
 from penink_cli.textures.threshold import Screen
 
 SOURCES = ("reconstruct.ps", "texture.ps", "drawing.ps", "outline.ps", "data.ps", "page.ps")
@@ -55,7 +55,7 @@ def write(illustration: Illustration, packing: str = "flate") -> bytes:
 
 
 def _bytes(layer: LayerData) -> bytes:
-    tiles = [tile_bytes(s) for s in layer.table.screens if s.layer is None]
+    tiles = [tile_bytes(s) for s in layer.table.screens if is_sent(s)]
     return layer.samples + layer.edges + b"".join(tiles)
 
 
@@ -63,14 +63,12 @@ def _read(layer: LayerData) -> str:
     return (
         f"{layer.width} {layer.height} {layer.levels} GetSamples "
         f"{layer.chains} {layer.outlined} {layer.vertices} {layer.ends} GetEdges "
-    ) + " ".join(_tile(i, s, layer.table.whole) for i, s in enumerate(layer.table.screens) if s.layer is None)
+    ) + " ".join(_tile(i, s, layer.table.whole) for i, s in enumerate(layer.table.screens) if is_sent(s))
 
 
 def _draw(layer: LayerData) -> str:
     table = layer.table
-    screens = " ".join(
-        _screen(i, s) if s.layer is not None else f"Tile{i}" for i, s in enumerate(table.screens)
-    )
+    screens = " ".join(_screen(i, s) for i, s in enumerate(table.screens))
     return (
         f"/OutlinePen {_number(layer.outline_pt)} def /Gamma {_number(layer.gamma)} def\n"
         f"{_number(table.pen_pt)} {_number(table.magnification)} [ {screens} ] Layer\n"
@@ -78,16 +76,20 @@ def _draw(layer: LayerData) -> str:
 
 
 def _screen(number: int, screen: Screen) -> str:
-    assert screen.layer is not None
+    if screen.again is not None:
+        return f"Tile0 {_number(screen.again)} Again"
+    if screen.layer is None:
+        return f"Tile{number}"
     layer = screen.layer
-    return f"{number} {_number(layer.angle)} {_number(layer.low)} {_number(layer.high)} Lines"
+    numbers = (layer.angle, layer.low, layer.high, screen.wave, math.degrees(screen.turn))
+    return f"{number} {' '.join(map(_number, numbers))} Lines"
 
 
 def _tile(number: int, screen: Screen, whole: bool) -> str:
-    lengths, covers = (" ".join(map(_number, v.tolist())) for v in (screen.lengths, screen.covers))
+    fresh, covers = (" ".join(map(_number, v.tolist())) for v in (screen.fresh, screen.covers))
     return (
-        f"/Tile{number} {_number(screen.width)} {_number(screen.height)} [ {lengths} ] [ {covers} ] "
-        f"{'true' if whole else 'false'} {len(screen.enters)} GetTile def"
+        f"/Tile{number} {_number(screen.width)} {_number(screen.height)} [ {fresh} ] [ {covers} ] "
+        f"{'true' if whole else 'false'} {_number(screen.widens)} {len(screen.enters)} GetTile def"
     )
 
 

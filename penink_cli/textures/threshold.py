@@ -17,6 +17,7 @@ a pen or a device that cannot paint so fine gets the pen and the tile magnified 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
@@ -25,6 +26,7 @@ import numpy.typing as npt
 
 from penink_cli.blasting import tile as blasting
 from penink_cli.model import Floats, HatchLayer, Ints, Texture
+from penink_cli.textures.even import direction
 
 Bytes = npt.NDArray[np.uint8]
 Integers = npt.NDArray[np.int32]
@@ -47,11 +49,14 @@ class Screen:
     width, height: of the tile, points.
     points, first: control points (p, 2) in points and where each stroke begins, as in `model.Strokes`.
     enters: (s,) tone above which each stroke is drawn.
-    lengths, covers: (k,) ascending: the coverage of the screen by itself where strokes of that length, points per
-        square point, are drawn, piecewise linear.
+    covers, fresh: (k,) the strokes that enter until the screen by itself covers covers[i], in ascending order, add
+        fresh[i] square points of ink for each point of their length: the more there is, the more they overlap.
     line: (s,) the number of the line that a stroke is part of, -1 for none.
     level: (256,) of lines only: the row of `way` for a tone in 255ths.
+    widens: mean of |cos| + |sin| over the strokes' directions: by so many of its pixels a device widens them.
     layer: of a screen of lines, what a renderer makes it from.
+    again: of a screen that repeats the first one's strokes, half a tile away, in what those leave bare: the tone from
+        which on it does; else None.
     """
 
     angle: float
@@ -60,11 +65,30 @@ class Screen:
     points: Floats
     first: Ints
     enters: Floats
-    lengths: Floats
     covers: Floats
+    fresh: Floats
     line: Integers
     level: Bytes
+    widens: float
     layer: HatchLayer | None = None
+    again: float | None = None
+
+    @property
+    def fresh_of_each(self) -> Floats:
+        """(s,) the fresh ink of a point of each stroke, square points."""
+        low = self.again if self.again is not None else self.layer.low if self.layer else 0.0
+        own = (self.enters - low) / (1 - low)
+        return self.fresh[np.minimum(np.searchsorted(self.covers, own, side="right"), len(self.fresh) - 1)]
+
+    @property
+    def wave(self) -> float:
+        """How far lines wander sideways, points."""
+        return self.layer.wave_pt if self.layer else 0.0
+
+    @property
+    def turn(self) -> float:
+        """By how much their wave turns along a point, radians."""
+        return round(2 * math.pi / self.layer.wave_length_pt, 6) if self.layer and self.layer.wave_length_pt else 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,8 +162,8 @@ def lines(layer: HatchLayer, number: int) -> Screen:
     n = len(points)
     return Screen(
         layer.angle, ALONG_PT, ACROSS_PT, np.array(points).reshape(-1, 2), np.arange(n + 1) * 4, np.array(enters),
-        np.array(PARTS) * LINES / ACROSS_PT, np.array(COVERS),
-        np.array(line, np.int32), levels(layer), layer,
+        np.array(COVERS[1:]), np.diff(COVERS) / np.diff(PARTS) * ACROSS_PT / LINES,
+        np.array(line, np.int32), levels(layer), widening(np.array([(0, 0), *[direction(layer.angle)] * 3])), layer,
     )  # fmt: skip
 
 
@@ -175,9 +199,9 @@ def give_way() -> Bytes:
 
 #: Steps in which the control points of strokes that are not lines are kept, points, and how far one may lead.
 GRID_PT, FARTHEST = 0.25, 127
-#: Strokes that enter later than this add more bytes than ink.
-LATEST = 0.93
-#: What a device of 600 dpi adds to a pen, roughly, as `PEN_PT` is meant for one of 0.4 pt.
+#: Strokes that enter later than this add more bytes than ink: the first ones come again, elsewhere, instead.
+LATEST = 0.9
+#: What a device of 600 dpi adds to a pen in the mean over all directions: `PEN_PT` is meant for one of 0.4 pt.
 WIDENED_PT = 0.14
 
 
@@ -199,14 +223,36 @@ def strokes(texture: Texture) -> Screen:
             limits.append(float(np.floor(enters[i] * 255)) / 255)
             # whole strokes count with their round ends, runs without
             equal.append(float(np.hypot(*(points[-1][3] - points[-1][0]))) + (0.785 * pen if texture.whole else 0.0))
-    lengths = np.cumsum(equal) / (tile.width * tile.height)
-    knots = np.unique(np.linspace(0, len(limits) - 1, 12).astype(int))
-    n = len(points)
+    control = np.array(points).reshape(-1, 4, 2)
+    at = np.array(limits)
+    lengths = np.append(0, np.cumsum(equal)) / (tile.width * tile.height)
+    reached = np.append(at, LATEST)
+    knots = np.unique(np.searchsorted(reached, np.linspace(0, LATEST, 19)[1:]))
+    knots = knots[knots > 0]
+    covers = reached[knots] - 0.5 / 255  # between two levels, so that no rounding matters
+    n = len(control)
     return Screen(
-        0.0, tile.width, tile.height, np.array(points).reshape(-1, 2), np.arange(n + 1) * 4, np.array(limits),
-        np.append(0, lengths[knots]), np.append(0, np.array(limits)[knots]),
-        np.full(n, -1, np.int32), np.zeros(256, np.uint8),
+        0.0, tile.width, tile.height, control.reshape(-1, 2), np.arange(n + 1) * 4, at,
+        covers, np.diff(np.append(0, covers)) / np.diff(np.append(0, lengths[knots])),
+        np.full(n, -1, np.int32), np.zeros(256, np.uint8), widening(control),
     )  # fmt: skip
+
+
+def once_more(screen: Screen, low: float) -> Screen:
+    """The same strokes half a tile away: from tone `low` on they cover what the screen leaves bare."""
+    half = (screen.width / 2, screen.height / 2)
+    return replace(screen, points=screen.points + half, enters=low + (1 - low) * screen.enters, again=low)
+
+
+def widening(cubics: Floats) -> float:
+    """Mean of |cos| + |sin| over the directions of cubics (s, 4, 2), by length; of dots, that of all directions.
+
+    >>> float(widening(np.array([[(0, 0), (1, 1), (2, 2), (3, 3)]])).round(6))
+    1.414214
+    """
+    steps = np.diff(cubics.reshape(-1, 4, 2), axis=1)
+    length = np.sqrt((steps**2).sum(axis=2)).sum()
+    return float(np.abs(steps).sum() / length) if length > 0 else WIDENED_PT * 600 / 72
 
 
 def _short(segment: Floats) -> list[Floats]:
@@ -226,7 +272,10 @@ def table(texture: Texture, pen_pt: float | None = None) -> ThresholdTable:
     if not texture.layers:
         own = float(np.median(texture.strokes.widths)) + WIDENED_PT
         magnification = (pen + WIDENED_PT) / own
-        return ThresholdTable(texture.name, (strokes(texture),), give_way(), own, magnification, texture.whole)
+        first = strokes(texture)
+        return ThresholdTable(
+            texture.name, (first, once_more(first, LATEST)), give_way(), own, magnification, texture.whole
+        )
     screens, low = [], 0.0
     for number, layer in enumerate(texture.layers):
         screens.append(lines(replace(layer, low=low), number))

@@ -39,7 +39,7 @@ def on_a_page(picture: Illustration, width: float, tmp_path) -> list[np.ndarray]
     height = width * picture.height / picture.width
     with Page(path, 300, 300) as page:
         text = page.evaluate(f"svg({width}, [0, 0, {width}, {height}], 0)")
-    (lines,) = re.findall(r' d="([^"]*)"', text)
+    lines = "".join(re.findall(r' d="([^"]*)"', text))
     return [np.array(part.split(), float).reshape(-1, 2) for part in lines.split("M")[1:]]
 
 

@@ -45,15 +45,16 @@ class Reader {
   }
 
   // Strokes that are not lines: threshold, first point, three steps from there, in quarters of a point.
-  tile({tile, lengths, covers, whole, strokes: count}) {
+  tile({tile, fresh, covers, whole, widens, strokes: count}) {
     const strokes = [];
     for (let k = 0; k < count; k++) {
       const limit = this.byte(), u0 = this.word() / 4, v0 = this.word() / 4;
       const [x1, y1, x2, y2, x3, y3] = Array.from({length: 6}, () => (this.byte() - 128) / 4);
       const axis = (first, a, b, c) => [first, 3 * a, 3 * (b - 2 * a), c - 3 * a - 3 * (b - 2 * a)];
-      strokes.push({long: Math.hypot(x3, y3), u: axis(u0, x1, x2, x3), v: axis(v0, y1, y2, y3), limit, line: -1});
+      strokes.push({long: Math.hypot(x3, y3), u: axis(u0, x1, x2, x3), v: axis(v0, y1, y2, y3), limit, line: -1,
+        weight: freshInk(limit / 255, covers, fresh)});
     }
-    return {angle: 0, strokes, tile, lengths, covers, whole};
+    return {angle: 0, strokes, tile, whole, wave: 0, turn: 0, widens};
   }
 }
 
@@ -62,7 +63,9 @@ function readLayers(description, bytes) {
   const reader = new Reader(bytes);
   return description.map(d => {
     const ink = reader.samples(d.w, d.h, d.levels), {xs, ys, ends, outlines} = reader.edges(d.chains, d.outlined);
-    const screens = d.screens.map((s, i) => Array.isArray(s) ? lines(i, ...s) : reader.tile(s));
+    const screens = [];
+    d.screens.forEach((s, i) =>
+      screens.push(Array.isArray(s) ? lines(i, ...s) : "again" in s ? again(screens[0], s.again) : reader.tile(s)));
     const curve = d.gamma === 1 ? null :
       Uint8Array.from({length: 256}, (_, t) => Math.floor(255 * (1 - (1 - t / 255) ** d.gamma) + 0.5));
     return {picture: new Picture(d.w, d.h, ink, xs, ys, ends), screens, outlines, curve,

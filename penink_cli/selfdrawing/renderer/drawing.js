@@ -3,7 +3,15 @@
 
 const PARTS = [0, 0.5, 0.63, 0.75, 1], COVERS = [0, 0.6912, 0.845, 0.943, 0.995];
 const AROUND = 288, ACROSS = 100, LINES = 256, BLOCK = 9, PATCH = 18, GAP = 3, SHORT = 3, DEEP = 24;
-const MARGIN = 84;                                            // units that a stroke may reach into the window from outside
+// Units around the window that are reconstructed and corrected with it: what lies farther moves no stroke in it visibly.
+const MARGIN = 36;
+
+// The fresh ink of a point of a stroke that enters where its screen covers so much.
+function freshInk(cover, covers, fresh) {
+  let k = 0;
+  while (k < covers.length - 1 && covers[k] <= cover) k++;
+  return fresh[k];
+}
 
 function interpolate(x, xs, ys) {
   if (x <= xs[0]) return ys[0];
@@ -15,36 +23,44 @@ function interpolate(x, xs, ys) {
 const RANK = Array.from({length: LINES}, (_, k) => parseInt(k.toString(2).padStart(8, "0").split("").reverse().join(""), 2));
 
 // How far a line moves aside for those that have entered beside it, for each 64th of the lines.
-const WAY = Array.from({length: 64}, (_, r) => {
+const WAY = new Float64Array(64 * LINES);
+for (let r = 0; r < 64; r++) {
   const there = [...RANK.keys()].filter(k => RANK[k] < 4 * r + 2), home = there.map(k => (k + 0.5) * ACROSS / LINES), n = home.length;
   let at = home;
   for (let round = 0; round < 3; round++)
     at = at.map((v, i) => v / 2 + ((i ? at[i - 1] : at[n - 1] - ACROSS) + (i < n - 1 ? at[i + 1] : at[0] + ACROSS)) / 4);
-  const way = new Float64Array(LINES);
-  there.forEach((k, i) => { way[k] = (clamp(Math.floor(128.5 + 24 * (at[i] - home[i])), 0, 255) - 128) / 24; });
-  return way;
-});
+  there.forEach((k, i) => { WAY[64 * k + r] = (clamp(Math.floor(128.5 + 24 * (at[i] - home[i])), 0, 255) - 128) / 24; });
+}
 
-// A screen of lines: strokes as u0, length, v0, v1, v2 (v = v0 + t (v1 + t v2)), limit, line.
-function lines(number, angle, low, high) {
+// A screen of lines: strokes as the coefficients of cubics in u and v, limit, line, weight (the ink of a unit of length).
+function lines(number, angle, low, high, wave, turn, widens) {
   let state = 4711 + 97 * number;
   const random = () => (state = (state * 25173 + 13849) % 65536) >> 8, spread = () => random() / 128 - 1;
   const strokes = [], span = (high - low) / (1 - low);
+  const slopes = PARTS.slice(1).map((part, k) => (COVERS[k + 1] - COVERS[k]) / (part - PARTS[k]) * ACROSS / LINES);
   for (let line = 0; line < LINES; line++) {
     const home = (line + 0.5) * ACROSS / LINES, cover = interpolate((RANK[line] + 0.5) / LINES, PARTS, COVERS);
+    const limit = 255 * (low + (1 - low) * cover), weight = freshInk(cover, COVERS.slice(1), slopes);
     let u0 = random() * AROUND / 256;
     for (let left = AROUND; left > 0;) {
       let long = 42 + random() / 8;
       if (left < long + 30) long = left;
       const a = home + 0.1 * spread(), b = home + 0.1 * spread(), push = 0.45 * spread();
-      if (cover < span) strokes.push({long, u: [u0, long, 0, 0], v: [a, b - a + push, -push, 0], limit: 255 * (low + (1 - low) * cover), line});
+      if (cover < span) strokes.push({long, u: [u0, long, 0, 0], v: [a, b - a + push, -push, 0], limit, line, weight});
       u0 += long;
       left -= long;
     }
   }
-  const level = Array.from({length: 256}, (_, t) =>
+  const level = Uint8Array.from({length: 256}, (_, t) =>
     Math.min(63, Math.floor(64 * interpolate(clamp((t / 255 - low) / (1 - low), 0, 1), COVERS, PARTS))));
-  return {angle, strokes, level, tile: [AROUND, ACROSS], lengths: PARTS.map(p => p * LINES / ACROSS), covers: COVERS, whole: false};
+  return {angle, strokes, level, tile: [AROUND, ACROSS], whole: false, wave, turn, widens};
+}
+
+// The same strokes half a tile away: from tone low on they cover what the screen leaves bare.
+function again(screen, low) {
+  const [du, dv] = screen.tile.map(side => side / 2);
+  return {...screen, strokes: screen.strokes.map(s => ({...s, limit: 255 * low + (1 - low) * s.limit,
+    u: [s.u[0] + du, ...s.u.slice(1)], v: [s.v[0] + dv, ...s.v.slice(1)]}))};
 }
 
 // Draws one layer. layer: picture, screens, pen, outlines ...; width, height: of the picture in units; window: x0 y0 x1 y1 of it.
@@ -58,9 +74,8 @@ function draw(layer, width, height, view, paint, outline) {
   const x0 = Math.floor(from(view[0], perX)), y0 = Math.floor(from(view[1], perY));
   const x1 = Math.ceil(upto(view[2], perX, n)), y1 = Math.ceil(upto(view[3], perY, m)), wide = x1 - x0, tall = y1 - y0;
   if (wide <= 0 || tall <= 0) return;
-  let tone = picture.reconstruct(n, m, x0, y0, x1, y1);
-  if (layer.curve) tone = tone.map(t => layer.curve[t]);
-  const toneAt = (x, y) => tone[clamp(Math.floor(y * perY) - y0, 0, tall - 1) * wide + clamp(Math.floor(x * perX) - x0, 0, wide - 1)];
+  const tone = picture.tone(n, m, x0, y0, x1, y1);
+  if (layer.curve) for (let k = 0; k < tone.length; k++) tone[k] = layer.curve[tone[k]];
 
   const bx0 = Math.floor(x0 / perX / BLOCK), by0 = Math.floor(y0 / perY / BLOCK);
   const across = Math.ceil(Math.min(width, x1 / perX) / BLOCK - 1e-9) - bx0, down = Math.ceil(Math.min(height, y1 / perY) / BLOCK - 1e-9) - by0;
@@ -78,7 +93,7 @@ function draw(layer, width, height, view, paint, outline) {
     }
   }
 
-  const px = new Float64Array(400), py = new Float64Array(400), depth = new Float64Array(400);
+  const px = new Float64Array(4096), py = new Float64Array(4096), depth = new Float64Array(4096);
   let ink, most, patchX, patchY;
 
   const patches = () => {
@@ -124,45 +139,58 @@ function draw(layer, width, height, view, paint, outline) {
       const us = [], vs = [];
       for (const [x, y] of [[left, top], [right, top], [left, bottom], [right, bottom]]) { us.push(x * c + y * s); vs.push(y * c - x * s); }
       const lowU = Math.min(...us), highU = Math.max(...us), lowV = Math.min(...vs), highV = Math.max(...vs);
+      const away = screen.wave + 4, near = {left: left - away, top: top - away, right: right + away, bottom: bottom + away};
       for (const stroke of screen.strokes) {
         const {long, u: [u0, u1, u2, u3], v: [v0, v1, v2, v3], limit, line} = stroke;
-        const steps = Math.max(1, Math.ceil(long / 1.5)), step = long / steps, reach = long / 2 + 4;
+        const steps = clamp(Math.ceil(long / 1.5), 1, 4094), half = long / 2;
         for (let a = Math.floor((lowU - u0 - long) / tileU); a <= Math.ceil((highU - u0 + long) / tileU); a++)
           for (let b = Math.floor((lowV - v0 - long) / tileV); b <= Math.ceil((highV - v0 + long) / tileV); b++) {
             const du = u0 + a * tileU, dv = v0 + b * tileV;
             const mu = du + u1 / 2 + u2 / 4 + u3 / 8, mv = dv + v1 / 2 + v2 / 4 + v3 / 8, mx = mu * c - mv * s, my = mu * s + mv * c;
-            if (mx < left - reach || my < top - reach || mx > right + reach || my > bottom + reach) continue;
-            let near = false;
-            for (let k = 0; k <= 4 && !near; k++) {
+            if (mx < near.left - half || my < near.top - half || mx > near.right + half || my > near.bottom + half) continue;
+            for (let k = 0; k <= 4; k++) {
               const t = k / 4, u = du + t * (u1 + t * (u2 + t * u3)), v = dv + t * (v1 + t * (v2 + t * v3));
-              near = patchAt(u * c - v * s, u * s + v * c) > limit;
+              if (patchAt(u * c - v * s, u * s + v * c) > limit) {
+                const reach = half + away, within = line >= 0 && mx - reach >= ox && my - reach >= oy &&
+                  mx + reach < x1 / perX && my + reach < y1 / perY;
+                copy(screen, stroke, steps, du, dv, c, s, within, painting);
+                break;
+              }
             }
-            if (near) copy(screen, steps, step, du, dv, stroke, c, s, painting);
           }
       }
       if (!painting) for (let k = 0; k < bare.length; k++) {
         const i = k % across, j = Math.floor(k / across);
         const area = Math.min(BLOCK, width - (bx0 + i) * BLOCK) * Math.min(BLOCK, height - (by0 + j) * BLOCK);
-        bare[k] *= 1 - interpolate(ink[k] / area, screen.lengths, screen.covers);
+        bare[k] *= 1 - Math.min(1, ink[k] / area);
       }
     }
   };
 
-  const copy = (screen, steps, step, du, dv, {u: [, u1, u2, u3], v: [, v1, v2, v3], limit, line}, c, s, painting) => {
+  // One stroke in one place; within: all of it is where the tone is known.
+  const copy = (screen, stroke, steps, du, dv, c, s, within, painting) => {
+    const {long, u: [, u1, u2, u3], v: [, v1, v2, v3], limit, line, weight} = stroke, {wave, turn, level} = screen, step = long / steps;
     let aside = 0, above = 0, total = 0;
     for (let i = 0; i <= steps; i++) {
       const t = i / steps, u = du + t * (u1 + t * (u2 + t * u3));
       let v = dv + t * (v1 + t * (v2 + t * v3)) + aside;
-      if (line >= 0) v += 0.3 * Math.sin(0.09 * u + 0.03 * v) + 0.2 * Math.sin(0.21 * u - 0.05 * v);
-      const x = u * c - v * s, y = u * s + v * c, got = toneAt(x, y), d = got - limit;
+      if (line >= 0) {
+        const w = v;
+        v += 0.3 * Math.sin(0.09 * u + 0.03 * w) + 0.2 * Math.sin(0.21 * u - 0.05 * w);
+        if (wave) v += wave * (0.4 * Math.sin(turn * (u + w / 3)) + 0.15 * Math.sin(turn * (1.7 * u - w / 5)));
+      }
+      const x = u * c - v * s, y = u * s + v * c;
+      let p = Math.floor(x * perX) - x0, q = Math.floor(y * perY) - y0;
+      if (!within) { p = p < 0 ? 0 : p >= wide ? wide - 1 : p; q = q < 0 ? 0 : q >= tall ? tall - 1 : q; }
+      const got = tone[q * wide + p], d = got - limit;
       px[i] = x; py[i] = y; depth[i] = d; total += d;
       if (d > 0) above++;
       if (line >= 0) {
-        const aim = WAY[screen.level[got]][line];
+        const aim = WAY[64 * line + level[got]];
         if (!i) { aside = aim; px[0] -= aside * s; py[0] += aside * c; } else if (d > 0) aside += 0.2 * (aim - aside);
       }
     }
-    if (screen.whole) { if (total > 0) close(0, steps, 0, steps, step, screen, painting); return; }
+    if (screen.whole) { if (total > 0) close(0, steps, 0, steps, step, screen, weight, painting); return; }
     if (!above) return;
     let begins = -1, ends = -1, peak = 0;
     for (let i = 0; i <= steps + 1; i++) {
@@ -171,7 +199,7 @@ function draw(layer, width, height, view, paint, outline) {
         ends = i;
         peak = Math.max(peak, depth[i]);
       } else if (begins >= 0 && (i > steps || i - ends > GAP || depth[i] < -DEEP)) {
-        close(begins, ends, peak, steps, step, screen, painting);
+        close(begins, ends, peak, steps, step, screen, weight, painting);
         begins = -1;
       }
     }
@@ -185,21 +213,26 @@ function draw(layer, width, height, view, paint, outline) {
     }
     return at + way * (depth[at] / fall - 0.4 * pen / step);
   };
-  const close = (begins, ends, peak, steps, step, screen, painting) => {
+  const close = (begins, ends, peak, steps, step, screen, weight, painting) => {
     if (ends - begins < SHORT && peak <= DEEP && ends - begins !== steps) return;
     const ta = begins > 0 ? end(begins, -1, steps, step) : 0, tb = ends < steps ? end(ends, 1, steps, step) : steps;
     if (tb <= ta) return;
     if (!painting) {
-      const each = screen.whole ? (steps * step + 0.785 * pen) / (steps + 1) : step * (tb - ta) / (ends - begins + 1);
-      for (let j = begins; j <= ends; j++) { const b = blockOf(px[j], py[j]); if (b >= 0) ink[b] += each; }
+      const each = weight * (screen.whole ? (steps * step + 0.785 * pen) / (steps + 1) : step * (tb - ta) / (ends - begins + 1));
+      for (let j = begins; j <= ends; j++) {
+        const b = blockOf(px[j], py[j]), i = Math.min(j, steps - 1);
+        // a wave stretches the way
+        if (b >= 0) ink[b] += screen.wave ? each * Math.hypot(px[i + 1] - px[i], py[i + 1] - py[i]) / step : each;
+      }
       return;
     }
-    const xs = [], ys = [], point = t => {
+    const xs = [], ys = [], every = screen.level ? 3 : 1, point = t => {
       const i = clamp(Math.floor(t), 0, steps - 1), f = t - i;
       xs.push(px[i] + f * (px[i + 1] - px[i])); ys.push(py[i] + f * (py[i + 1] - py[i]));
     };
     point(ta);
-    for (let i = 3 * (Math.floor(ta / 3) + 1); i < tb - 1; i += 3) if (i - ta > 1) { xs.push(px[i]); ys.push(py[i]); }
+    for (let i = every * (Math.floor(ta / every) + 1); i < tb; i += every)
+      if (i - ta > 0.5 && tb - i > 0.5) { xs.push(px[i]); ys.push(py[i]); }
     point(tb);
     paint(xs, ys, screen);
   };

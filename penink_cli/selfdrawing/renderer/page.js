@@ -1,7 +1,7 @@
 // page.js - the page: what is seen of the picture, how one moves, prints and saves.
 
 const UNIT = 2;                                               // CSS pixels a unit of the screen's texture: a pen of about one pixel
-const PRINTER = 1.27 * 72 / 600;                              // what a printer of 600 dpi adds to a pen, points
+const PRINTER = 72 / 600;                                     // what a printer of 600 dpi adds to an upright pen, points
 const MOST = 64;                                              // greatest magnification
 const canvas = document.querySelector("canvas"), status = document.querySelector("output");
 const view = {zoom: 1, x: 0, y: 0};                           // x, y: of the picture's corner, CSS pixels
@@ -56,43 +56,46 @@ function repaint() {
     const unit = UNIT * layer.magnification, unclipped = [-view.x, -view.y, canvas.clientWidth - view.x, canvas.clientHeight - view.y];
     context.setTransform(ratio * unit, 0, 0, ratio * unit, view.x * ratio, view.y * ratio);
     context.lineWidth = layer.pen;
-    context.beginPath();
+    // each stroke by itself: in batches the browser takes longer, for it tells overlaps within a path
     draw(layer, wide / unit, tall / unit, unclipped.map(x => x / unit), (xs, ys) => {
+      context.beginPath();
       context.moveTo(xs[0], ys[0]);
       for (let i = 1; i < xs.length; i++) context.lineTo(xs[i], ys[i]);
-      if (++strokes % 50 === 0) { context.stroke(); context.beginPath(); }
-    }, (xs, ys, closed) => {
       context.stroke();
+      strokes++;
+    }, (xs, ys, closed) => {
       context.beginPath();
       context.lineWidth = layer.outlinePen;
       const lean = leans(xs, ys, closed);
       context.moveTo(xs[0], ys[0]);
       for (let i = 1; i < xs.length; i++)
         context.bezierCurveTo(xs[i - 1] + lean[i - 1][0], ys[i - 1] + lean[i - 1][1], xs[i] - lean[i][0], ys[i] - lean[i][1], xs[i], ys[i]);
+      context.stroke();
     });
-    context.stroke();
   }
   shown = {x: view.x, y: view.y, scale: scale()};
   painted = {ms: performance.now() - began, strokes};
   status.value = `${view.zoom.toFixed(view.zoom < 10 ? 1 : 0)}×`;
 }
 
-// A window (points) of the picture, drawn at so many points wide, as an SVG document for a pen that paints `gain` wider.
+// A window (points) of the picture, drawn at so many points wide, as an SVG document for a device whose pixels are `gain` points.
 function svg(width, window, gain) {
   const height = width * size[1] / size[0], [x0, y0, x1, y1] = window, fixed = x => x.toFixed(2);
   const parts = [`<svg xmlns="http://www.w3.org/2000/svg" width="${fixed(x1 - x0)}pt" height="${fixed(y1 - y0)}pt" viewBox="${window.map(fixed).slice(0, 2).join(" ")} ${fixed(x1 - x0)} ${fixed(y1 - y0)}">`,
     `<clipPath id="frame"><rect width="${fixed(width)}" height="${fixed(height)}"/></clipPath><g clip-path="url(#frame)" fill="none" stroke="#000" stroke-linecap="round" stroke-linejoin="round">`];
   for (const layer of layers) {
-    const unit = layer.magnification, hatching = [], outlines = [];
-    draw(layer, width / unit, height / unit, window.map(x => x / unit), (xs, ys) => {
-      hatching.push("M" + xs.map((x, i) => fixed(x * unit) + " " + fixed(ys[i] * unit)).join(" "));
+    const unit = layer.magnification, hatching = new Map(), outlines = [];
+    draw(layer, width / unit, height / unit, window.map(x => x / unit), (xs, ys, screen) => {
+      if (!hatching.has(screen)) hatching.set(screen, []);
+      hatching.get(screen).push("M" + xs.map((x, i) => fixed(x * unit) + " " + fixed(ys[i] * unit)).join(" "));
     }, (xs, ys, closed) => {
       const lean = leans(xs, ys, closed), p = (x, y) => fixed(x * unit) + " " + fixed(y * unit);
       outlines.push("M" + p(xs[0], ys[0]) + xs.slice(1).map((x, i) => "C" + [
         p(xs[i] + lean[i][0], ys[i] + lean[i][1]), p(x - lean[i + 1][0], ys[i + 1] - lean[i + 1][1]), p(x, ys[i + 1])].join(" ")).join(""));
     });
-    for (const [paths, pen] of [[hatching, layer.pen * unit], [outlines, layer.outlinePen * unit]])
-      if (paths.length) parts.push(`<path stroke-width="${fixed(Math.max(0.1, pen - gain))}" d="${paths.join("")}"/>`);
+    const add = (paths, pen) => parts.push(`<path stroke-width="${fixed(Math.max(0.1, pen))}" d="${paths.join("")}"/>`);
+    for (const [screen, paths] of hatching) add(paths, layer.pen * unit - gain * screen.widens);
+    if (outlines.length) add(outlines, layer.outlinePen * unit - 1.27 * gain);
   }
   return parts.join("\n") + "</g></svg>\n";
 }

@@ -1,6 +1,7 @@
 // reconstruct.js - grey samples and discontinuity edges to tone on a grid of any size (section 2 of the paper).
 // The same steps as reconstruct.ps, which says why; only a window of the grid is filled.
 
+const TILE = 96, MOST_TILES = 400;                            // cells; tiles that are kept
 const NUDGE = 1 / 1024, REACH = 2 * Math.SQRT2 + 1;
 const smooth = t => t <= 0 ? 0 : t >= 1 ? 1 : t * t * (3 - 2 * t);
 const clamp = (x, low, high) => x < low ? low : x > high ? high : x;
@@ -61,6 +62,7 @@ class Picture {
     this.pathsOf = [];
     this.seen = new Int32Array(Math.max(this.count, this.nodes.length));
     this.stamp = 0;
+    this.tiles = new Map();
   }
 
   at(i, j) { return (j + 1) * this.columns + i + 1; }
@@ -109,6 +111,23 @@ class Picture {
       this.pathsOf[key] = Array.from(reached, ([t, d]) => [...this.nodes[t], d, t]);
     }
     return this.pathsOf[key];
+  }
+
+  // The same as reconstruct, from tiles that are kept as long as the grid stays the same: who moves the picture needs new
+  // ones at its border only.
+  tone(n, m, x0, y0, x1, y1) {
+    const wide = x1 - x0, out = new Uint8Array(wide * (y1 - y0));
+    if (n !== this.n || m !== this.m || this.tiles.size > MOST_TILES) Object.assign(this, {n, m, tiles: new Map()});
+    for (let j = Math.floor(y0 / TILE); j * TILE < y1; j++) for (let i = Math.floor(x0 / TILE); i * TILE < x1; i++) {
+      const left = i * TILE, top = j * TILE, right = Math.min(n, left + TILE), bottom = Math.min(m, top + TILE), key = j * 65536 + i;
+      if (!this.tiles.has(key)) this.tiles.set(key, this.reconstruct(n, m, left, top, right, bottom));
+      const tile = this.tiles.get(key), from = Math.max(left, x0), upto = Math.min(right, x1);
+      for (let q = Math.max(top, y0); q < Math.min(bottom, y1); q++) {
+        const row = (q - top) * (right - left) - left;
+        out.set(tile.subarray(row + from, row + upto), (q - y0) * wide + from - x0);
+      }
+    }
+    return out;
   }
 
   // Tone of the cells x0 .. x1, y0 .. y1 of a grid of n x m that fills the frame.
