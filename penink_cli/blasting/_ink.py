@@ -13,6 +13,8 @@ import cython
 from cython.cimports.libc.math import ceil, fabs, fabsf, sqrt
 
 COMPILED = cython.compiled
+#: Which part of a pixel's width an edge gains on the mean; measured on strokes in all directions, 300 to 1200 dpi.
+GAIN = cython.declare(cython.double, 0.985)
 
 
 @cython.cfunc
@@ -165,8 +167,8 @@ def _half_width(width: cython.double, gain: cython.double, dx: cython.double, dy
     length: cython.double = sqrt(dx * dx + dy * dy)
     if length < 1e-9:
         # a disc touches as many pixels as one this much wider (the mean over all directions)
-        return 0.5 * (width + 1.2732395447 * gain)
-    return 0.5 * (width + gain * (fabs(dx) + fabs(dy)) / length)
+        return 0.5 * (width + 1.2732395447 * GAIN * gain)
+    return 0.5 * (width + GAIN * gain * (fabs(dx) + fabs(dy)) / length)
 
 
 @cython.cfunc
@@ -282,7 +284,8 @@ def paint(
 @cython.exceptval(check=False)
 def _gains(
     bits: cython.uchar[:, :, ::1], counts: cython.uchar[:, ::1],
-    residual: cython.float[:, ::1], guide: cython.float[:, ::1], lenience: cython.double, profile: cython.double[::1],
+    residual: cython.float[:, ::1], guide: cython.float[:, ::1], weight: cython.float[:, ::1],
+    lenience: cython.double, profile: cython.double[::1],
     points: cython.double[:, ::1], p0: cython.Py_ssize_t, p1: cython.Py_ssize_t,
     ox: cython.double, oy: cython.double, width: cython.double, gain: cython.double,
     ink: cython.double[::1], own: cython.double[::1], due: cython.double[::1],
@@ -322,7 +325,8 @@ def _gains(
         y = _cell(my)
         x = 0 if x < 0 else (counts.shape[1] - 1 if x >= counts.shape[1] else x)
         y = 0 if y < 0 else (counts.shape[0] - 1 if y >= counts.shape[0] else y)
-        due[i] = residual[y, x] + lenience * guide[y, x]
+        # where part of the kernel is cut off, less is due for the same want of ink: both sides are put at full weight
+        due[i] = residual[y, x] / weight[y, x] + lenience * guide[y, x]
         own[i] = 0.0
     # the kernel along the stroke, by distance in quarter cells; pieces are 1/16 … 1 cell or so apart
     for i in range(n):
@@ -389,7 +393,7 @@ def _runs(
 def place(
     bits: cython.uchar[:, :, ::1], counts: cython.uchar[:, ::1],
     residual: cython.float[:, ::1], guide: cython.float[:, ::1], kernel: cython.float[:, ::1], step: cython.float,
-    profile: cython.double[::1],
+    weight: cython.float[:, ::1], profile: cython.double[::1],
     points: cython.double[:, ::1], first: cython.longlong[::1], widths: cython.double[::1], walls: cython.uchar[::1],
     order: cython.longlong[::1], gain: cython.double,
     shifts: cython.double[::1], spacing: cython.double[::1],
@@ -468,7 +472,7 @@ def place(
             for j in range(shifts.shape[0]):
                 ox = nx * shifts[j] * spacing[i]
                 oy = ny * shifts[j] * spacing[i]
-                n = _gains(bits, counts, residual, guide, lenience, profile, points, p0, p1, ox, oy,
+                n = _gains(bits, counts, residual, guide, weight, lenience, profile, points, p0, p1, ox, oy,
                            widths[i], gain, ink, own, due)
                 if not whole and not strict:
                     value = _runs(n, ink, own, due, cost, least, least_wall, (walls[i] & 1) != 0, (walls[i] & 2) != 0,
@@ -498,7 +502,7 @@ def place(
                 _draw(bits, counts, residual, guide, kernel, step, points, p0, p1, bx, by, widths[i], gain, True)
                 continue
             if m != shifts.shape[0] - 1:
-                n = _gains(bits, counts, residual, guide, lenience, profile, points, p0, p1, bx, by,
+                n = _gains(bits, counts, residual, guide, weight, lenience, profile, points, p0, p1, bx, by,
                            widths[i], gain, ink, own, due)
                 _runs(n, ink, own, due, cost, least, least_wall, (walls[i] & 1) != 0, (walls[i] & 2) != 0, caution,
                       total, best, starts)
@@ -517,8 +521,9 @@ def place(
 
 
 def press(
-    counts: cython.uchar[:, ::1], residual: cython.float[:, ::1], guide: cython.float[:, ::1],
-    kernel: cython.float[:, ::1], step: cython.float, profile: cython.double[::1],
+    bits: cython.uchar[:, :, ::1], counts: cython.uchar[:, ::1], gain: cython.double,
+    residual: cython.float[:, ::1], guide: cython.float[:, ::1], kernel: cython.float[:, ::1], step: cython.float,
+    profile: cython.double[::1],
     points: cython.double[:, ::1], first: cython.longlong[::1], widths: cython.double[::1],
     lightest: cython.double[::1], heaviest: cython.double[::1],
     order: cython.longlong[::1], scratch: cython.double[:, ::1],
@@ -527,7 +532,7 @@ def press(
 
     widths: (n,) in and out, subpixels, between lightest and heaviest. The residual, whose cells are twice as wide and
     high as those of counts, is kept up to date to first order only: what a wider stroke newly covers is taken to be as
-    bare as the cells it runs through.
+    bare as the paper is now, a subpixel on either side of it.
     """
     k: cython.Py_ssize_t
     i: cython.Py_ssize_t
@@ -566,7 +571,10 @@ def press(
                 if x < 0 or y < 0 or x >= counts.shape[1] or y >= counts.shape[0]:
                     fresh[j] = 0.0
                     continue
-                fresh[j] = sqrt(dx * dx + dy * dy) * (1.0 - 0.75 * counts[y, x] * 0.015625) * 0.00390625
+                fresh[j] = 0.001953125 * _bar(
+                    bits, counts, points[p0 + j, 0], points[p0 + j, 1], points[p0 + j + 1, 0], points[p0 + j + 1, 1],
+                    _half_width(widths[i], gain, dx, dy) + 1.0, False, False, False,
+                )  # fmt: skip
                 x >>= 1
                 y >>= 1
                 pull += fresh[j] * residual[y, x]

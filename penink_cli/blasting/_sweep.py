@@ -113,8 +113,8 @@ def lay(
     phase: cython.double[:, ::1], count: cython.double[::1], at: cython.longlong[::1], tree: cython.double[::1],
     cuts: cython.double[::1], waits: cython.uchar[::1], seed: cython.ulonglong,
     shortest: cython.Py_ssize_t, least: cython.Py_ssize_t, most: cython.Py_ssize_t,
-    steepest: cython.double, memory: cython.double, drift: cython.double,
-    strokes: cython.double[:, ::1], spans: cython.longlong[:, ::1],
+    steepest: cython.double, memory: cython.double, drift: cython.double, heal: cython.double,
+    reach: cython.Py_ssize_t, strokes: cython.double[:, ::1], spans: cython.longlong[:, ::1],
 ) -> cython.Py_ssize_t:
     """Lay lines in the order in which they fall due; returns how many strokes there are.
 
@@ -123,6 +123,7 @@ def lay(
     cuts: (columns,) where a line was last cut in two at this column; start below all rows.
     shortest: runs of fewer columns wait for the next line. least, most: columns a stroke has.
     steepest: rows a column. memory: how much of a line's deviation from its due place the next one keeps.
+    heal, reach: how much of a mismatch of phase at a run's end is mended with each line, over so many columns.
     drift: how far, in spacings, chance moves the line after a stroke either way.
     strokes: (n, 3) out: the middle column, the row there, the slope. spans: (n, 4) out: the first and the
         last column, then whether the stroke goes on as another one (1) or ends there (0), at either end.
@@ -282,6 +283,27 @@ def lay(
                     cuts[b] = row
                     v = row + slope * (b + 1 - middle)
                 a = b + 1
+            # where the lines beyond an end of the run are out of step with these, pull these towards them: else
+            # line after line would end at the same place, in a seam
+            for side in range(2):
+                b = left if side == 0 else right
+                c = left - 1 if side == 0 else right + 1
+                if c < 0 or c >= columns or tree[leaves + c] > 1e29 or tree[leaves + b] > 1e29:
+                    continue
+                d = tree[leaves + c] - tree[leaves + b]
+                w = _rate_at(phase, b, tree[leaves + b])
+                error = _rate_at(phase, c, tree[leaves + c])
+                d *= w if w > error else error
+                if fabs(d) > 1.5:
+                    continue
+                d -= floor(d + 0.5)
+                for i in range(reach):
+                    c = b + i if side == 0 else b - i
+                    if c < left or c > right:
+                        break
+                    w = 1.0 - cython.cast(cython.double, i) / reach
+                    count[c] += heal * d * w * w
+                    _raise(tree, leaves, c, _due(phase, c, count[c], at))
     return n
 
 

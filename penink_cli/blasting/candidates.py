@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from penink_cli.blasting import curves, sweep, walls
-from penink_cli.blasting.sheet import SIGMA_PT, Sheet
+from penink_cli.blasting.sheet import SIGMA_PT, Cells, Sheet
 from penink_cli.model import Floats, HatchLayer, Ints, Strokes
 from penink_cli.textures.even import direction
 
@@ -22,7 +22,7 @@ BATCHES = 4
 class Candidates:
     """Curves cut at the walls, sampled, and in which order to try them.
 
-    points, first: the curves. pieces: see `curves.sample`. bounded: see `walls.Pieces`.
+    points, first: the curves. pieces: see `curves.sample`. bounded: see `walls.Pieces`. box: see `walls.Walls`.
     """
 
     points: Floats
@@ -32,12 +32,14 @@ class Candidates:
     widths: Floats
     bounded: npt.NDArray[np.uint8]
     batches: list[Ints]
+    box: tuple[float, float, float, float]
 
     def drawn(self, runs: Ints, moved: Floats) -> Strokes:
         """The runs of candidates that were drawn, as strokes (of a sheet of no size)."""
         start, end = runs[:, 1].astype(np.float64), runs[:, 2].astype(np.float64)
         points, first = curves.cut(self.points, self.first, self.pieces, runs[:, 0], start, end)
-        points += np.repeat(moved, np.diff(first), axis=0)
+        # a stroke moved sideways may have left the frame by as much
+        points = np.clip(points + np.repeat(moved, np.diff(first), axis=0), self.box[:2], self.box[2:])
         return Strokes(0.0, 0.0, points, first, self.widths[runs[:, 0]])
 
 
@@ -72,7 +74,7 @@ def between_walls(
     pieces = curves.pieces_of(points, first, STEP_PT)
     return Candidates(
         points, first, pieces, curves.sample(points, first, pieces), np.full(len(first) - 1, pen), bounded,
-        [part for part in np.array_split(order, BATCHES) if len(part)],
+        [part for part in np.array_split(order, BATCHES) if len(part)], borders.box,
     )  # fmt: skip
 
 
@@ -88,11 +90,12 @@ def swept(
 
 def lattice(
     sheet: Sheet, layer: HatchLayer, pen: float, gain_pt: float, length: float, apart: float, least: float,
-    borders: walls.Walls, seed: int,
+    error: Cells, borders: walls.Walls, seed: int,
 ) -> Candidates:  # fmt: skip
     """Strokes in a layer's direction all over the sheet, those where most is due first.
 
-    least: they must pass a place where so many times as much is due as the stroke itself adds.
+    least: they must pass a place where so many times as much is due as the stroke itself adds,
+    error: (rows, columns) and where this is positive.
     """
     rng = np.random.default_rng([seed, 4])
     c, s = direction(layer.angle)
@@ -111,7 +114,7 @@ def lattice(
         at = np.floor((middle + (t * half)[:, None] * along) * cells).astype(np.int64)
         inside = (at >= 0).all(axis=1) & (at[:, 0] < sheet.columns) & (at[:, 1] < sheet.rows)
         at = np.clip(at, 0, [sheet.columns - 1, sheet.rows - 1])
-        active = inside & (sheet.tone[at[:, 1], at[:, 0]] > layer.low)
+        active = inside & (sheet.tone[at[:, 1], at[:, 0]] > layer.low) & (error[at[:, 1], at[:, 0]] > 0)
         due = np.maximum(due, np.where(active, sheet.residual[at[:, 1], at[:, 0]], 0.0))
     painted = sweep.painted_width(layer.angle, pen, gain_pt)
     keep = due > least * painted / (2.5066 * SIGMA_PT)

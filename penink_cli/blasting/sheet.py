@@ -90,6 +90,8 @@ class Sheet:
         self._kept: tuple[npt.NDArray[np.uint8], npt.NDArray[np.uint8]] | None = None
         self.residual: Cells = np.zeros((self.rows, self.columns), np.float32)
         self.step = STEP
+        #: how much of the kernel about each cell counts
+        self.weight = self.low_pass(np.ones_like(self.tone))
         # what the eye sees is kept for cells of twice the size
         self._coarse_tone = halve(self.tone)
         self._eye, self._eye_profile = low_pass_kernel(EYE_PT / CELL_PT / 2)
@@ -121,7 +123,14 @@ class Sheet:
 
         For cells of twice the size, (⌈rows / 2⌉, ⌈columns / 2⌉).
         """
-        return self._gather(halve(self.tone - self.ink), self._coarse_tone, self._eye) / self._seen_weight
+        return self.seen(self.tone - self.ink)
+
+    def seen(self, values: Cells) -> Cells:
+        """The mean of values (rows, columns) over what the eye takes in at once, on this side of strong steps of tone.
+
+        For cells of twice the size, (⌈rows / 2⌉, ⌈columns / 2⌉).
+        """
+        return self._gather(halve(values), self._coarse_tone, self._eye) / self._seen_weight
 
     def spread(self, error: Cells) -> Cells:
         """Values for cells of twice the size as values (rows, columns)."""
@@ -144,6 +153,7 @@ class Sheet:
     def owe_strictly(self) -> None:
         """Set what is due by the paper's rule: the tone itself, with the low-passed ink so far taken from it."""
         self.step = 2.0
+        self.weight = np.ones_like(self.tone)
         self.residual = self.tone - self.low_pass(self.ink)
 
     def paint(self, lines: Polylines, widths: Floats, splat: bool = False) -> Ints:
@@ -199,7 +209,7 @@ class Sheet:
 
         def run(order: Ints) -> None:
             _ink.place(
-                self.bits, self.counts, self.residual, self.tone, self.kernel, self.step, self.profile,
+                self.bits, self.counts, self.residual, self.tone, self.kernel, self.step, self.weight, self.profile,
                 points, lines.first, widths_sub, walls, order, self.gain, moves, spacing,
                 whole, strict, caution, lenience, cost, shortest_pt * self.pitch, shortest_wall_pt * self.pitch,
                 runs, moved, np.empty((5, longest)), np.empty(longest, np.int64),
@@ -230,7 +240,7 @@ class Sheet:
 
         def run(order: Ints) -> None:
             _ink.press(
-                self.counts, residual, self._coarse_tone, self._eye, self.step, self._eye_profile,
+                self.bits, self.counts, self.gain, residual, self._coarse_tone, self._eye, self.step, self._eye_profile,
                 points, lines.first, pressed, low, high, order, np.empty((3, longest)),
             )  # fmt: skip
 

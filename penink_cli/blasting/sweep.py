@@ -35,13 +35,18 @@ STROKE_PT = (34.0, 72.0)
 SLACK_PT = 4.0
 #: Distance of the knots of a wandering stroke.
 KNOT_PT = 9.0
-#: No stroke is turned from its layer's direction by more (the tangent of two degrees).
-STEEPEST = 0.035
+#: How far strokes are turned from their layer's direction (tangents): hardly, while they are laid, and by two degrees
+#: to even them out. Were they laid so, they would lean where the tone changes, all of them until they can no more, and
+#: end in a row where two such fields meet: then nine ends in ten on a dark gradient stand in rows, now one in five.
+STEEPEST, RELAXED = 0.003, 0.035
 #: How much of a line's deviation from where it was due the next line keeps. Less than all, so that the
 #: density stays true; but the less, the longer a mismatch of neighbouring columns lives on as a seam.
 MEMORY = 0.9
 #: How far, in spacings, chance moves the next line: without it a flat field is a ruled lattice.
 DRIFT = 0.12
+#: How much of a mismatch of phase between a run and what lies beyond its end is mended with each line, and over what
+#: length.
+HEAL, HEAL_PT = 0.3, 60.0
 ROUNDS = 8
 #: The hand's variation: of a stroke's place in parts of the spacing, of its bow in points.
 WAVER = 0.07
@@ -107,13 +112,13 @@ def hatch(sheet: Sheet, coverage: Floats, layer: HatchLayer, pen_pt: float, gain
         phase, np.full(columns, float(rng.random())), np.zeros(columns, np.int64), np.empty(2 * leaves),
         np.full(columns, -1e9), np.zeros(columns, np.uint8), key,
         round(SHORTEST_PT / COLUMN_PT), round(STROKE_PT[0] / COLUMN_PT), round(STROKE_PT[1] / COLUMN_PT),
-        STEEPEST * COLUMN_PT / ROW_PT, MEMORY, DRIFT, strokes, spans,
+        STEEPEST * COLUMN_PT / ROW_PT, MEMORY, DRIFT, HEAL, round(HEAL_PT / COLUMN_PT), strokes, spans,
     )  # fmt: skip
     strokes, spans = strokes[:n], spans[:n]
     length = int((spans[:, 1] - spans[:, 0] + 1).sum())
     begin, lists, place = np.empty(columns + 1, np.int64), np.empty(length, np.int64), np.empty(length, np.int64)
     _sweep.crossings(strokes, spans, n, begin, lists, place)
-    _sweep.relax(phase, strokes, spans, n, begin, lists, place, ROUNDS, STEEPEST * COLUMN_PT / ROW_PT)
+    _sweep.relax(phase, strokes, spans, n, begin, lists, place, ROUNDS, RELAXED * COLUMN_PT / ROW_PT)
 
     # from columns and rows to points, the hand's variation, and a small gap where one stroke follows another
     at_column, at_row = np.floor(strokes[:, 0]).astype(np.int64), np.floor(strokes[:, 1]).astype(np.int64)

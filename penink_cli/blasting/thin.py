@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from penink_cli.blasting import curves
+from penink_cli.blasting import curves, walls
 from penink_cli.blasting.sheet import Cells, Sheet
 from penink_cli.model import Floats, Ints, Strokes
 
@@ -175,6 +175,6 @@ def strokes_along(sheet: Sheet, pen_pt: float, painted_pt: float, fixed: bool) -
             pens.append(pen)
     first: Ints = curves.starts(np.array(sizes, np.int64))
     points = np.concatenate(parts) if parts else np.zeros((0, 2))
-    d = min(0.62 * pen_pt, 0.25 * sheet.width, 0.25 * sheet.height)
+    d = walls.margin(pen_pt, sheet.width, sheet.height)
     points = np.clip(points, d, (sheet.width - d, sheet.height - d))
     return Strokes(sheet.width, sheet.height, points, first, np.array(pens, np.float64))

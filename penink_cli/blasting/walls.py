@@ -67,11 +67,19 @@ def strong_edges(edges: EdgeList, sheet: Sheet) -> Floats:
     return np.concatenate([a[strong], b[strong]], axis=1)
 
 
+def margin(pen_pt: float, width_pt: float, height_pt: float) -> float:
+    """How far within the frame the middle lines of strokes stay, so that no ink reaches over it.
+
+    Half of what the pen is pressed to at the most, and what coordinates may be rounded by in a drawing; but some of a
+    tiny sheet must be left.
+    """
+    return min(0.61 * pen_pt + 0.1, 0.25 * width_pt, 0.25 * height_pt)
+
+
 def build(edges: EdgeList | None, sheet: Sheet, pen_pt: float) -> Walls:
     """The frame, so far within that no stroke's ink reaches over it, and the strong edges of the picture."""
     w, h = sheet.width, sheet.height
-    # half of what the pen is pressed to at the most, but some of a tiny sheet must be left
-    d = min(0.62 * pen_pt, 0.25 * w, 0.25 * h)
+    d = margin(pen_pt, w, h)
     segments: Floats = np.array(
         [[d, d, w - d, d], [w - d, d, w - d, h - d], [w - d, h - d, d, h - d], [d, h - d, d, d]]
     )

@@ -142,3 +142,33 @@ def evenness(strokes: Strokes, angle: float, margin: float = 14.0, step: float =
         "gaping": (gaps > 1.8 * mean).mean(),
         "aligned_ends": aligned / max(1, len(ends)),
     }
+
+
+def ends_in_rows(strokes: Strokes, angle: float) -> float:
+    """The share of ends within 15° of angle that stand in a row: two others within 4 pt along and 4 pt across.
+
+    An end that meets the next stroke of its own line is none.
+    """
+    along = np.array([np.cos(np.radians(angle)), np.sin(np.radians(angle))])
+    across = np.array([-along[1], along[0]])
+    ends: list[list[tuple[float, float]]] = [[], []]
+    for i in range(len(strokes)):
+        a, b = strokes[i][0], strokes[i][-1]
+        if abs((b - a) @ across) < 0.26 * abs((b - a) @ along) and np.hypot(*(b - a)) > 7:
+            a, b = (a, b) if (b - a) @ along > 0 else (b, a)
+            for side, p in enumerate((a, b)):
+                if (p > 3).all() and (p < (strokes.width - 3, strokes.height - 3)).all():
+                    ends[side].append((float(p @ along), float(p @ across)))
+    starts, stops = (np.array(sorted(side)) for side in ends)
+
+    def free(some: Floats, others: Floats) -> Floats:
+        d = np.abs(some[:, None] - others[None])
+        return some[~((d[..., 0] < 2.5) & (d[..., 1] < 0.5)).any(axis=1)]
+
+    rows, total = 0, 0
+    for side in (free(starts, stops), free(stops, starts)):
+        d = np.abs(side[:, None] - side[None])
+        near = (d[..., 0] < 4) & (d[..., 1] < 4) & (d[..., 1] > 0.3)
+        rows += int((near.sum(axis=1) >= 2).sum())
+        total += len(side)
+    return rows / max(total, 1)

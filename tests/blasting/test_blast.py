@@ -5,6 +5,7 @@ import pytest
 
 from penink_cli.blasting import _ink, _sweep, _walls
 from penink_cli.blasting.blast import batches, blast, too_dark
+from penink_cli.blasting.shares import shares
 from penink_cli.errors import ParameterError
 from penink_cli.model import EdgeList, HatchLayer, Strokes, Texture
 from penink_cli.texture_options import find_texture, shipped
@@ -76,6 +77,23 @@ def test_hatching_on_a_flat_field_lies_even_but_is_not_ruled(level, angle):
     found = measures.evenness(blast(flat(level), 360, 360, None, texture), angle)
     assert found["spread"] > 0.04 and found["cv"] < 0.24
     assert found["doubled"] < 0.01 and found["gaping"] < 0.03 and found["aligned_ends"] < 0.16
+
+
+def test_no_rows_of_ends_where_the_tone_changes():
+    y, x = np.mgrid[:100, :100] / 99
+    for wanted, texture in ((0.02 + 0.4 * x, "parallel"), (0.3 + 0.4 * x + 0.2 * y, "crosshatch")):
+        strokes = blast(wanted, 288, 288, None, find_texture(texture))
+        assert measures.ends_in_rows(strokes, -45.0) < 0.04
+
+
+def test_a_layer_begins_with_lines_near_each_other_and_not_for_a_spot():
+    layers = find_texture("crosshatch").layers
+    tone = np.linspace(0.0, 0.98, 99)[None]
+    first, second = shares(tone, tone, layers)
+    assert np.allclose(1 - (1 - first) * (1 - second), tone)
+    assert (second[tone <= layers[1].low] == 0).all() and second[second > 0].min() > 0.08
+    spot = np.full((1, 1), layers[1].low + 0.05)
+    assert shares(spot, spot - 0.1, layers)[1][0, 0] == 0 and shares(spot, spot, layers)[1][0, 0] > 0
 
 
 def test_the_measure_of_evenness_sees_uneven_lines():
