@@ -70,4 +70,5 @@ cdef class Finder:
     cdef void spread(self, double reach) noexcept nogil
     cdef int bends_of(self, int i, int j) noexcept nogil
     cdef bint attenuate(self, double px, double py, int i0, int i1, int j0, int j1, double r) noexcept nogil
+    cdef double last_leg(self, double qx, double qy, double limit) noexcept nogil
     cdef double length(self, double px, double py, double qx, double qy, double limit) noexcept nogil

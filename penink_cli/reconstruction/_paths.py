@@ -23,6 +23,7 @@ INFINITY = cython.declare(cython.double, float("inf"))
 BLOCK = cython.declare(cython.int, 2)  # nodes are sorted into blocks of 2² × 2² cells: fewer to pass over than cells
 CROWD = cython.declare(cython.int, 48)  # edges in one cell from which on it gets a grid of its own
 SLACK = cython.declare(cython.double, 1e-9)  # more than rounding comes to in lengths of a few samples
+MANY = cython.declare(cython.int, 64)  # samples in a block from which on bends are not remembered for each of them
 FINE = cython.declare(cython.int, 32)  # cells of that grid along a side
 
 
@@ -928,6 +929,7 @@ class Finder:
         j: cython.int
         k: cython.int = 0
         n: cython.int = (i1 - i0 + 1) * (j1 - j0 + 1)
+        remember: cython.bint = n <= MANY
         s: cython.Py_ssize_t
         m: cython.int
         at: cython.int
@@ -953,13 +955,14 @@ class Finder:
                 k += 1
         if farthest <= 0.0:
             return True
-        # The bends next to the samples first: finding them uses the same marks as the search from p.
-        k = 0
-        for i in range(i0, i1 + 1):
-            for j in range(j0, j1 + 1):
-                if self.alpha[k] < 0.0:
-                    self.bends_of(i, j)
-                k += 1
+        # A block of many samples is one of few pixels: then it is dear to find all bends next to each sample beforehand.
+        if remember:  # first of all: finding them uses the same marks as the search from p
+            k = 0
+            for i in range(i0, i1 + 1):
+                for j in range(j0, j1 + 1):
+                    if self.alpha[k] < 0.0:
+                        self.bends_of(i, j)
+                    k += 1
         farthest = sqrt(farthest) + r
         self.first_bends(px, py, farthest)
         self.spread(farthest)
@@ -969,12 +972,15 @@ class Finder:
                 if self.alpha[k] < 0.0:
                     d = sqrt((px - j) * (px - j) + (py - i) * (py - i))
                     best = INFINITY
-                    at = self.bends_of(i, j)
-                    s = cython.cast(cython.Py_ssize_t, i - self.row0) * self.scene.width + j
-                    for m in range(at, at + self.count[s]):
-                        node = self.pool_node[m]
-                        if self.stamp[node] == self.now and self.distance[node] + self.pool_length[m] < best:
-                            best = self.distance[node] + self.pool_length[m]
+                    if remember:
+                        at = self.bends_of(i, j)
+                        s = cython.cast(cython.Py_ssize_t, i - self.row0) * self.scene.width + j
+                        for m in range(at, at + self.count[s]):
+                            node = self.pool_node[m]
+                            if self.stamp[node] == self.now and self.distance[node] + self.pool_length[m] < best:
+                                best = self.distance[node] + self.pool_length[m]
+                    else:
+                        best = self.last_leg(j, i, d + r)
                     t = (best - d) / r
                     if t >= 1.0:
                         self.alpha[k] = 0.0
@@ -988,33 +994,45 @@ class Finder:
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)
+    def last_leg(self, qx: cython.double, qy: cython.double, limit: cython.double) -> cython.double:
+        """Length of the shortest path shorter than the limit from where `spread` began, round a bend, to the query q."""
+        k: cython.int
+        n: cython.int
+        v: cython.int
+        x: cython.double
+        y: cython.double
+        left: cython.double
+        best: cython.double = INFINITY
+        for k in range(self.n_done):
+            n = self.done[k]
+            left = limit - self.distance[n]
+            if left <= 0.0:
+                break
+            v = self.scene.node_vertex[n]
+            x = self.scene.vx[v] - qx
+            y = self.scene.vy[v] - qy
+            if x * x + y * y >= left * left:
+                continue
+            if self.scene.bends_for(n, qx, qy) and self.scene.sees_vertex(qx, qy, v):
+                best = self.distance[n] + sqrt(x * x + y * y)
+                limit = best
+        return best
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
     def length(
         self, px: cython.double, py: cython.double, qx: cython.double, qy: cython.double, limit: cython.double
     ) -> cython.double:
         """Length of the shortest unobstructed path between two queries, infinite beyond the limit."""
-        k: cython.int
-        n: cython.int
         d: cython.double = sqrt((px - qx) * (px - qx) + (py - qy) * (py - qy))
-        best: cython.double = INFINITY
-        x: cython.double
-        y: cython.double
         if d > limit:
             return INFINITY
         if self.scene.n_edges == 0 or self.scene.sees(px, py, qx, qy):
             return d
         self.first_bends(px, py, limit)
         self.spread(limit)
-        for k in range(self.n_done):
-            n = self.done[k]
-            if self.distance[n] >= best:
-                break
-            x = self.scene.vx[self.scene.node_vertex[n]]
-            y = self.scene.vy[self.scene.node_vertex[n]]
-            d = self.distance[n] + sqrt((x - qx) * (x - qx) + (y - qy) * (y - qy))
-            if d < best and d <= limit and self.scene.bends_for(n, qx, qy):
-                if self.scene.sees_vertex(qx, qy, self.scene.node_vertex[n]):
-                    best = d
-        return best
+        return self.last_leg(qx, qy, limit)
 
 
 def path_lengths(

@@ -71,6 +71,15 @@ def test_random_arrangements_match_the_brute_force(seed, width, height, count, l
     assert np.abs(found - expected).max() < UNIT
 
 
+@pytest.mark.parametrize("lattice", [None, 2])
+def test_a_strong_reduction_matches_the_brute_force(lattice):
+    """So many samples a pixel that bends are looked for pixel by pixel, instead of once for each sample."""
+    rng = np.random.default_rng(8)
+    edges = random_edges(rng, 12, 10, 25, 2.0, lattice)
+    f = samples_for(rng, 10, 12)
+    assert np.abs(reconstruct(f, edges, 2, 2) - brute.reconstruct(f, edges, 2, 2)).max() < UNIT
+
+
 @pytest.mark.parametrize("seed", range(2))
 def test_random_arrangements_match_the_triangulation(seed):
     rng = np.random.default_rng(seed)
