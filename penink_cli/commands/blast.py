@@ -97,7 +97,7 @@ def blast(
         raise click.UsageError("give one of --width and --dpi")
     only_one_standard_input(file, edges_file, *ink_files, texture_name if texture_name == "-" else None)
     texture = find_texture(texture_name)
-    edges = read_edges(edges_file)
+    edges = read_edges(edges_file, max_pixels)
     image = read_grey(file, max_pixels)
     rows, columns = image.values.shape
     width_pt = width if width is not None else columns / (dpi or 1.0) * 72.0

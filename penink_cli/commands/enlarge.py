@@ -66,7 +66,7 @@ def enlarge(
     if (scale is None) == (size is None):
         raise click.UsageError("one of --scale and --size is needed")
     only_one_standard_input(file, edges_file)
-    edges = read_edges(edges_file)
+    edges = read_edges(edges_file, max_pixels)
     samples = read_grey(file, max_pixels)
     h, w = samples.values.shape
     if size is None:

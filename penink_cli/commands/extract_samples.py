@@ -40,7 +40,7 @@ def extract_samples(
     from penink_cli.reconstruction import extraction
 
     only_one_standard_input(file, edges_file)
-    edges = read_edges(edges_file)
+    edges = read_edges(edges_file, max_pixels)
     assert edges is not None
     photo = read_photo(file, max_pixels)
     samples = extraction.extract_samples(photo.grey, edges, margin)

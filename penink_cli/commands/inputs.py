@@ -32,8 +32,8 @@ def read_photo(path: str | None, max_pixels: int) -> GreyImage:
         return photo.read_grey(stream, streams.source_name(path), max_pixels)
 
 
-def read_edges(path: str | None) -> EdgeList | None:
-    """A valid arrangement of discontinuity edges; None where no file is given."""
+def read_edges(path: str | None, max_pixels: int = 0) -> EdgeList | None:
+    """A valid arrangement of discontinuity edges; None where no file is given. max_pixels allows more than 80 MB."""
     if path is None:
         return None
     from penink_cli.arrangement import validity
@@ -41,7 +41,7 @@ def read_edges(path: str | None) -> EdgeList | None:
 
     source = streams.source_name(path)
     with streams.reading(path) as stream:
-        edges = edge_list.read(stream, source)
+        edges = edge_list.read(stream, source, max_pixels)
     try:
         validity.check(edges)
     except PeninkError as error:

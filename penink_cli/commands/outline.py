@@ -62,6 +62,7 @@ def outline(
     min_strength: float,
     min_length: float,
     regions: tuple[tuple[float, float], ...],
+    max_pixels: int,
     **_: Any,
 ) -> None:
     """Turn discontinuity edges into smooth outline strokes.
@@ -77,7 +78,7 @@ def outline(
     from penink_cli.model import OutlineChoice
     from penink_cli.papers import check_sheet
 
-    edges = read_edges(file or "-")
+    edges = read_edges(file or "-", max_pixels)
     assert edges is not None  # which it is only where no file is named
     height = width * edges.height / edges.width
     check_sheet(width, height)

@@ -73,7 +73,7 @@ def reduce(
     if max_error is not None and not auto:
         raise click.UsageError("--max-error goes with --auto")
     only_one_standard_input(file, edges_file, photo_file or "")
-    edges = read_edges(edges_file)
+    edges = read_edges(edges_file, max_pixels)
     samples = read_grey(file, max_pixels)
     photo = read_photo(photo_file, max_pixels).grey if photo_file else None
     height, width = samples.values.shape

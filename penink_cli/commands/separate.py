@@ -77,7 +77,7 @@ def separate(
     elif grey is not None:
         share = overlays.by_grey(photo, *grey)
     else:
-        edges = read_edges(edges_file)
+        edges = read_edges(edges_file, max_pixels)
         assert edges is not None
         share = overlays.by_region(photo, edges, points)
     with writing(output) as out:

@@ -35,7 +35,7 @@ def show_edges(
     from penink_cli.reconstruction import extraction
 
     only_one_standard_input(file, edges_file)
-    edges = read_edges(edges_file)
+    edges = read_edges(edges_file, max_pixels)
     assert edges is not None
     photo = read_photo(file, max_pixels)
     contaminated = extraction.contaminated(photo.grey, edges, margin)

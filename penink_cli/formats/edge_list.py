@@ -162,6 +162,11 @@ def _check_edges(edges: Ints, count: int) -> None:
 
 def _first_equal(rows: Floats | Ints) -> tuple[int, int] | None:
     """The first pair of equal rows of (n, 2), by the place of the second; None where all differ."""
+    # A million edges have two million ends: sorting one whole number for each takes a tenth of sorting pairs.
+    words = np.ascontiguousarray(rows).view(np.uint64)
+    mixed = np.sort(words[:, 0] * np.uint64(0x9E3779B97F4A7C15) ^ words[:, 1])
+    if not (mixed[1:] == mixed[:-1]).any():
+        return None
     order = np.lexsort((rows[:, 1], rows[:, 0]))  # stable: equal rows stay in their order
     same = np.flatnonzero((rows[order[1:]] == rows[order[:-1]]).all(axis=1))
     if not len(same):

@@ -23,21 +23,22 @@ from typing import Any, BinaryIO, Protocol
 
 import numpy as np
 
-from penink_cli.errors import FormatError, ParameterError
+from penink_cli.errors import FormatError, LimitError, ParameterError
 from penink_cli.formats import _stroke_lines, strict_json
 from penink_cli.model import Strokes
 
 LIMIT = 1e7  # points; 3.5 km. Keeps thousandths exact and every format's integers within 32 bits
 MAX_LINE = 16 << 20
+MAX_POINTS = 50_000_000  # of all strokes: 0.8 GB
 BLOCK = 1 << 20
 BATCH = 1 << 14
 
 
 def read(stream: BinaryIO, source: str) -> Strokes:
-    """Read a whole strokes file; raises FormatError with the number of the line at fault."""
+    """Read a whole strokes file; raises FormatError, or LimitError, with the number of the line at fault."""
     try:
         return _read(stream)
-    except FormatError as error:
+    except (FormatError, LimitError) as error:
         raise error.from_source(source) from None
 
 
@@ -47,6 +48,7 @@ def _read(stream: BinaryIO) -> Strokes:
     points: list[np.ndarray] = []
     counts: list[np.ndarray] = []
     widths: list[np.ndarray] = []
+    total = 0
     for text in _blocks(stream):
         start = 0
         if header is None:
@@ -60,6 +62,9 @@ def _read(stream: BinaryIO) -> Strokes:
         while start < len(text):
             start, strokes, used = _stroke_lines.parse(text, start, LIMIT, block_points, block_counts, block_widths)
             line_number += strokes
+            total += used
+            if total > MAX_POINTS:
+                raise LimitError(f"line {line_number}: more than {MAX_POINTS} points")
             points.append(block_points[:used].copy())
             counts.append(block_counts[:strokes].copy())
             widths.append(block_widths[:strokes].copy())

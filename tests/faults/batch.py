@@ -1,6 +1,6 @@
 """``python -m tests.faults.batch PHOTOGRAPHS [WIDTHxHEIGHT]``: a night's work by ``make -j2``, twice.
 
-Every tenth photograph has 12 megapixels, the others the size given. One is cut short on purpose: it must fail
+Every fiftieth photograph has 12 megapixels, the others the size given. One is cut short on purpose: it must fail
 alone and by name, and leave no target. The second run, from nothing, must give the same bytes.
 """
 
@@ -47,7 +47,7 @@ def photographs(folder: Path, count: int, size: tuple[int, int]) -> None:
         w, h = source.size
         left, top = int(chance.integers(0, w // 4)), int(chance.integers(0, h // 4))
         cut = source.crop((left, top, left + 3 * w // 4, top + 3 * h // 4)).rotate(90 * (i % 4), expand=True)
-        cut.resize((4000, 3000) if i % 10 == 9 else size, Image.Resampling.BICUBIC).save(
+        cut.resize((4000, 3000) if i % 50 == 49 else size, Image.Resampling.BICUBIC).save(
             folder / f"{i:03}.jpg", quality=90
         )
 

@@ -27,13 +27,28 @@ def _photo(data: bytes) -> Any:
 def _edges(data: bytes) -> Any:
     from penink_cli.formats import edge_list
 
-    return edge_list.read(io.BytesIO(data), SOURCE)
+    found = edge_list.read(io.BytesIO(data), SOURCE)
+    _json(data)
+    return found
 
 
 def _strokes(data: bytes) -> Any:
     from penink_cli.formats import strokes
 
-    return strokes.read(io.BytesIO(data), SOURCE)
+    found = strokes.read(io.BytesIO(data), SOURCE)
+    for line in data.removesuffix(b"\n").split(b"\n"):
+        _json(line)
+    return found
+
+
+def _json(text: bytes) -> None:
+    """What is read in bulk, past the JSON reader, must be JSON all the same."""
+    import json
+
+    try:
+        json.loads(text.decode("utf-8"))
+    except ValueError as error:
+        raise AssertionError(f"read, and no JSON: {error}") from error
 
 
 def _texture(data: bytes) -> Any:

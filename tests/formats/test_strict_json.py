@@ -76,8 +76,12 @@ def test_the_place_is_named():
 
 
 @pytest.mark.parametrize(
-    "text", [b'"\\ud83d\\ude00"', '"😀"'.encode(), b"1e308", b"1e-999", b"-0.0", b" [ ] \r\n", b"1" + b"0" * 308, b"0." + b"3" * 400]
-)
+    "text",
+    [
+        b'"\\ud83d\\ude00"', '"😀"'.encode(), b"1e308", b"1e-999", b"-0.0", b" [ ] \r\n",
+        b"1" + b"0" * 308, b"0." + b"3" * 400,
+    ],
+)  # fmt: skip
 def test_is_read(text):
     assert strict_json.loads(text) == json.loads(text)
 
