@@ -45,20 +45,13 @@ def link_chains(points: EdgePoints) -> Chains:
     """Link each edge point to the next along its edge (Devernay 1995); singles are left out."""
     n = len(points.pixel)
     following, preceding = np.empty(n, np.int32), np.empty(n, np.int32)
-    _points.link(points.pixel, points.position, points.gradient, pixel_index(points), following, preceding)
+    _points.link(points.pixel, points.position, points.gradient, points.index, following, preceding)
     order, first = np.empty(n, np.int32), np.zeros(n + 1, np.int32)
     count = _points.follow(following, preceding, order, first)
     first = first[: count + 1]
     ring = preceding[order[first[:-1]]] >= 0 if count else np.zeros(0, bool)
     chains = Chains(order, first, ring)
     return chains.where(np.diff(first) > 1)
-
-
-def pixel_index(points: EdgePoints) -> Ints32:
-    """The point (h, w) of each pixel, -1 where there is none."""
-    index = np.full(points.shape, -1, np.int32)
-    index[points.pixel[:, 0], points.pixel[:, 1]] = np.arange(len(points.pixel), dtype=np.int32)
-    return index
 
 
 def chain_lengths(chains: Chains, position: Floats) -> Floats:

@@ -57,6 +57,7 @@ def detect_edges(
     chains = _telling(points, link_chains(points), high * steepness, min_length, sigma)
     if not len(chains):
         return EdgeList(width, height, strength=np.zeros(0))
+    points, chains = _compact(points, chains)
     blur = _blur(points, chains, sigma)
     error = position_error(points, noise, sigma, blur)
     sharp = sharpen(points, chains, blur, error)
@@ -64,6 +65,14 @@ def detect_edges(
     points = replace(points, position=smooth(points.position, sharp.pieces, error))
     points = replace(points, position=unbend(points, sharp.pieces, blur))
     return _arrange(points, chains, join_ends(points, chains, blur), tolerance, steepness)
+
+
+def _compact(points: EdgePoints, chains: Chains) -> tuple[EdgePoints, Chains]:
+    """Only the points that chains go through: in texture one of ten."""
+    used = np.zeros(len(points.pixel), bool)
+    used[chains.order] = True
+    order = (np.cumsum(used, dtype=np.int32) - 1)[chains.order].astype(np.int32)
+    return points.where(used), replace(chains, order=order)
 
 
 def _blur(points: EdgePoints, chains: Chains, sigma: float) -> float:

@@ -8,12 +8,14 @@ that imports it, then places a point on the ridge to a fraction of a pixel.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 import numpy.typing as npt
 
 from penink_cli.arrangement import _points
 from penink_cli.model import Floats
+from penink_cli.reconstruction import threads as threading
 
 Ints32 = npt.NDArray[np.int32]
 
@@ -34,19 +36,42 @@ class EdgePoints:
         where what is steeper than the point itself counts as equal.
     width: (n,) standard deviation (pixels) of the Gaussian whose shape the gradient has across
         the edge, smoothing included; 0 where the ridge is too flat or too noisy to tell.
+    index: (h, w) the point of each pixel, -1 where there is none.
     """
 
-    shape: tuple[int, int]
     pixel: Ints32
     position: Floats
     gradient: Floats
     surround: Floats
     width: Floats
+    index: Ints32
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Height and width of the picture."""
+        return self.index.shape[0], self.index.shape[1]
 
     @property
     def magnitude(self) -> Floats:
         """Steepness (n,), grey per pixel."""
         return np.hypot(self.gradient[:, 0], self.gradient[:, 1])
+
+    def where(self, wanted: npt.NDArray[np.bool_]) -> EdgePoints:
+        """The points for which wanted (n,) holds; the old points' index is used up."""
+        return EdgePoints(
+            self.pixel[wanted],
+            self.position[wanted],
+            self.gradient[wanted],
+            self.surround[wanted],
+            self.width[wanted],
+            self.index,
+        ).indexed()
+
+    def indexed(self) -> EdgePoints:
+        """The same points, their index made anew in place: that of 12 megapixels is 48 MB."""
+        self.index.fill(-1)
+        self.index[self.pixel[:, 0], self.pixel[:, 1]] = np.arange(len(self.pixel), dtype=np.int32)
+        return self
 
 
 def noise_level(grey: npt.NDArray[np.floating]) -> float:
@@ -83,47 +108,46 @@ def edge_points(grey: npt.NDArray[np.floating], sigma: float, low: float) -> Edg
         low: least gradient, grey per pixel of the smoothed image.
 
     """
-    from scipy.ndimage import gaussian_filter
-    from skimage.feature import canny
-
     height, width = grey.shape
-    halo = int(4 * sigma + 0.5) + 4 + SURROUND_PX
-    found = []
-    for top in range(0, height, _BAND_ROWS):
-        first, last = max(0, top - halo), min(height, top + _BAND_ROWS + halo)
-        band = np.ascontiguousarray(grey[first:last], np.float32)
-        threshold = low * _SOBEL_GAIN
-        mask = canny(band, sigma, threshold, threshold, mode="nearest")
-        mask[: top - first] = False
-        mask[top - first + _BAND_ROWS :] = False
-        rows, columns = np.nonzero(mask)
-        if not len(rows):
-            continue
-        smooth = gaussian_filter(band, sigma, mode="nearest")
-        pixel = np.column_stack([rows, columns]).astype(np.int32)
-        values = np.zeros((len(pixel), 6))
-        _points.locate(smooth, pixel, values)
-        steepness = np.zeros_like(smooth)
-        _points.steepness(smooth, steepness)
-        _points.surround(steepness, pixel, values, SURROUND_PX)
-        values[:, 1] += first
-        pixel[:, 0] += first
-        keep = values[:, 4] >= 0
-        found.append((pixel[keep], values[keep]))
-    pixel = np.concatenate([p for p, _ in found]) if found else np.zeros((0, 2), np.int32)
-    values = np.concatenate([v for _, v in found]) if found else np.zeros((0, 6))
+    tops = range(0, height, _BAND_ROWS)
+    bands = (partial(_band, grey, sigma, low, top) for top in tops)
+    found = list(threading.in_order(bands, threading.count(None)))
+    pixel = np.concatenate([p for p, _ in found])
+    values = np.concatenate([v for _, v in found])
+    del found
     index = np.full((height, width), -1, np.int32)
     index[pixel[:, 0], pixel[:, 1]] = np.arange(len(pixel), dtype=np.int32)
     keep = np.zeros(len(pixel), np.uint8)
     keep[index[pixel[:, 0], pixel[:, 1]]] = 1
     _points.thin(pixel, np.ascontiguousarray(values[:, :2]), index, keep, _SPACING)
-    keep = keep.astype(bool)
-    pixel, values = pixel[keep], values[keep]
-    return EdgePoints(
-        (height, width),
-        pixel,
-        np.ascontiguousarray(values[:, :2]),
-        np.ascontiguousarray(values[:, 2:4]),
-        np.ascontiguousarray(values[:, 5]),
-        np.ascontiguousarray(values[:, 4]),
+    kept = keep.astype(bool)
+    position, gradient, width_, surround = (
+        np.ascontiguousarray(values[kept, part]) for part in (slice(0, 2), slice(2, 4), 4, 5)
     )
+    return EdgePoints(pixel[kept], position, gradient, surround, width_, index).indexed()
+
+
+def _band(grey: npt.NDArray[np.floating], sigma: float, low: float, top: int) -> tuple[Ints32, Floats]:
+    """Pixels and values, as of `_points.locate` and `surround`, of the rows from top on."""
+    from scipy.ndimage import gaussian_filter
+    from skimage.feature import canny
+
+    halo = int(4 * sigma + 0.5) + 4 + SURROUND_PX
+    first, last = max(0, top - halo), min(len(grey), top + _BAND_ROWS + halo)
+    band = np.ascontiguousarray(grey[first:last], np.float32)
+    threshold = low * _SOBEL_GAIN
+    mask = canny(band, sigma, threshold, threshold, mode="nearest")
+    mask[: top - first] = False
+    mask[top - first + _BAND_ROWS :] = False
+    pixel = np.column_stack(np.nonzero(mask)).astype(np.int32)
+    values = np.zeros((len(pixel), 6))
+    if len(pixel):
+        smooth = gaussian_filter(band, sigma, mode="nearest")
+        _points.locate(smooth, pixel, values)
+        steepness = np.zeros_like(smooth)
+        _points.steepness(smooth, steepness)
+        _points.surround(steepness, pixel, values, SURROUND_PX)
+    values[:, 1] += first
+    pixel[:, 0] += first
+    keep = values[:, 4] >= 0
+    return pixel[keep], values[keep]

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from penink_cli.arrangement import _points
-from penink_cli.arrangement.chains import Chains, pixel_index
+from penink_cli.arrangement.chains import Chains
 from penink_cli.arrangement.corners import crossing
 from penink_cli.arrangement.gradient import EdgePoints
 from penink_cli.model import Floats
@@ -85,7 +85,7 @@ def loose_ends(
     target, cost = np.empty(len(at), np.int32), np.empty(len(at))
     radius = 3.0 * blur + 2.0
     _points.reach(
-        order[at], p0, direction, points.position, points.pixel, pixel_index(points), chain, place, radius, target, cost
+        order[at], p0, direction, points.position, points.pixel, points.index, chain, place, radius, target, cost
     )
     on_frame, travel = _frame_ahead(p0, direction, points.shape)
     return Ends(at, inward, length, trim, p0, direction, target, cost, on_frame, travel, radius)

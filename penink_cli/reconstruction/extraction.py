@@ -7,20 +7,19 @@ that can be reached without crossing an edge.
 
 from __future__ import annotations
 
-import os
-from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
+import math
 
 import numpy as np
 import numpy.typing as npt
 
 from penink_cli.model import EdgeList, Floats
-from penink_cli.reconstruction import _clean
+from penink_cli.reconstruction import _clean, _walls
+from penink_cli.reconstruction import threads as threading
 from penink_cli.reconstruction.camera import camera_blur
 
 _SPREAD = 1.5
 _STIFFNESS = 0.3
-_WINDOW = 49
+_BAND_ROWS = 64
 
 
 def segments(edges: EdgeList, width: int, height: int) -> tuple[Floats, Floats, Floats, Floats]:
@@ -50,19 +49,36 @@ def extract_samples(
     if not len(edges.edges):
         return values
     margin = contamination(camera_blur(values, edges)) if margin is None else margin
-    walls = np.zeros((height, width), np.uint8)
-    _clean.block(*segments(edges, width, height), walls)
     distance = _distance(edges, width, height, margin)
+    ground = walkable(edges, width, height, distance > margin)
     out = np.empty_like(values)
-    steps = int(np.ceil(margin)) + 3
-    table = np.exp(-np.arange(2 * 24 * 24 + 1) / (2 * _SPREAD * _SPREAD))
+    steps = math.ceil(margin) + 3
+    reach = _clean.MAX_REACH
+    table = np.array([math.exp(-d * d / (2 * _SPREAD * _SPREAD)) for d in range(-reach, reach + 1)])
 
-    def rows(band: tuple[int, int]) -> None:
-        seen, queue = np.zeros(_WINDOW**2, np.int32), np.zeros((_WINDOW**2 + 9, 2), np.int32)
-        _clean.extrapolate(values, walls, distance, margin, *band, steps, _SPREAD, _STIFFNESS, table, seen, queue, out)
+    def rows(first: int, last: int) -> None:
+        _clean.extrapolate(values, ground, distance, margin, first, last, steps, _SPREAD, _STIFFNESS, table, out)
 
-    in_bands(rows, height)
+    threading.share(threading.ranges(rows, height, _BAND_ROWS), threading.count(None))
     return np.clip(out, 0, 1, out=out)
+
+
+def walkable(edges: EdgeList, width: int, height: int, clean: npt.NDArray[np.bool_] | None = None) -> _clean.Ground:
+    """The steps between pixel centres of an image of width × height that cross no edge, and the pixels that count."""
+    walls = np.zeros((height, width), np.uint8)
+    _walls.block(*segments(edges, width, height), walls)
+    right, down = walls & _walls.RIGHT == 0, walls & _walls.DOWN == 0
+    right[:, -1] = False
+    down[-1] = False
+    return _clean.Ground(_words(right), _words(down), _words(clean if clean is not None else walls < 4))
+
+
+def _words(bits: npt.NDArray[np.bool_]) -> npt.NDArray[np.uint64]:
+    """Rows of bits (h, w) as words of 64, with an empty one before and two after."""
+    height, width = bits.shape
+    octets = np.zeros((height, 8 * ((width + 63) // 64 + 3)), np.uint8)
+    octets[:, 8 : 8 + (width + 7) // 8] = np.packbits(bits, axis=1, bitorder="little")
+    return octets.view("<u8").astype(np.uint64, copy=False)
 
 
 def contaminated(grey: npt.NDArray[np.floating], edges: EdgeList, margin: float | None = None) -> npt.NDArray[np.bool_]:
@@ -74,7 +90,7 @@ def contaminated(grey: npt.NDArray[np.floating], edges: EdgeList, margin: float 
 def _distance(edges: EdgeList, width: int, height: int, margin: float) -> npt.NDArray[np.float32]:
     """Distance (h, w) from each pixel's centre to the nearest edge, infinite beyond margin."""
     distance = np.full((height, width), np.inf, np.float32)
-    _clean.near(*segments(edges, width, height), margin, distance)
+    _walls.near(*segments(edges, width, height), margin, distance)
     return distance
 
 
@@ -85,11 +101,3 @@ def contamination(blur: float) -> float:
     of 1.3 the samples of a camera's sharp photo lose 2 dB.
     """
     return 0.7 + 1.3 * blur
-
-
-def in_bands(work: Callable[[tuple[int, int]], None], height: int, rows: int = 64) -> None:
-    """Do work((first, last)) for bands of rows, on as many threads as there are processors."""
-    bands = [(top, min(height, top + rows)) for top in range(0, height, rows)]
-    with ThreadPoolExecutor(os.cpu_count() or 1) as pool:
-        for _ in pool.map(work, bands):
-            pass

@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from penink_cli.errors import ParameterError
 from penink_cli.model import EdgeList
-from penink_cli.reconstruction import _clean
+from penink_cli.reconstruction import _walls
 from penink_cli.reconstruction.camera import camera_blur
 from penink_cli.reconstruction.enlarge import reconstruct
 from penink_cli.reconstruction.extraction import segments
@@ -128,9 +128,9 @@ class _Regions:
 
     def __init__(self, edges: EdgeList, height: int, width: int) -> None:
         walls = np.zeros((height, width), np.uint8)
-        _clean.block(*segments(edges, width, height), walls)
+        _walls.block(*segments(edges, width, height), walls)
         parent = np.zeros(height * width, np.int32)
-        _clean.regions(walls, parent)
+        _walls.regions(walls, parent)
         self.region = parent.reshape(height, width)
         self.wanted = np.flatnonzero(np.bincount(parent) >= LEAST_REGION_PX)
 

@@ -7,9 +7,10 @@ import numpy.typing as npt
 
 from penink_cli.errors import ParameterError
 from penink_cli.model import EdgeList, Floats
-from penink_cli.reconstruction import _clean
+from penink_cli.reconstruction import _clean, _walls
+from penink_cli.reconstruction import threads as threading
 from penink_cli.reconstruction.camera import camera_blur
-from penink_cli.reconstruction.extraction import in_bands, segments
+from penink_cli.reconstruction.extraction import segments, walkable
 from penink_cli.reconstruction.fit import AREA, POINT, fit_plain, fit_samples
 
 Ints32 = npt.NDArray[np.int32]
@@ -18,7 +19,8 @@ FITS = ("none", "lsq")
 
 _NEAR = 2.5  # samples: farther from an edge the plain reconstruction does not notice it
 _CELL = 4.0
-_WINDOW = 49
+_BAND_ROWS = 16
+_SPREAD, _STIFFNESS = 0.4, 0.3  # of the factor
 
 
 def reduce(
@@ -61,41 +63,39 @@ def reduce(
         blur = camera_blur(seen, edges) if blur is None else blur
     start = fit_plain(seen, width, height, blur, fine)
     if len(edges.edges):
-        _take_near_edges(values, edges, start)
+        _take_near_edges(values, edges, start, threads)
         if fit == "lsq":
             start = fit_samples(seen, edges, start, blur, fine, threads=threads)
     return np.clip(start, 0, 1).astype(np.float32)
 
 
-def _take_near_edges(values: npt.NDArray[np.float32], edges: EdgeList, out: Floats) -> None:
+def _take_near_edges(values: npt.NDArray[np.float32], edges: EdgeList, out: Floats, threads: int | None) -> None:
     """Replace the samples that an edge is near by planes fitted to what each can reach."""
     height, width = out.shape
     old_height, old_width = values.shape
     near = np.full(out.shape, np.inf, np.float32)
-    _clean.near(*segments(edges, width, height), _NEAR, near)
+    _walls.near(*segments(edges, width, height), _NEAR, near)
     lines = segments(edges, old_width, old_height)
-    walls = np.zeros(values.shape, np.uint8)
-    _clean.block(*lines, walls)
+    ground = walkable(edges, old_width, old_height)
     first, items = _buckets(lines, old_width, old_height)
-    factor = max(old_width / width, old_height / height)
+    factor = min(_clean.MAX_REACH - 1, max(old_width / width, old_height / height))
 
-    def rows(band: tuple[int, int]) -> None:
-        seen, queue = np.zeros(_WINDOW**2, np.int32), np.zeros((_WINDOW**2 + 9, 2), np.int32)
+    def rows(begin: int, end: int) -> None:
         _clean.resample(
-            values, walls, *lines, _CELL, first, items, *band, min(23, round(factor)), 0.4 * min(23, factor),
-            (0.3 * min(23, factor)) ** 2, np.zeros(0), near, seen, queue, out,
+            values, ground, *lines, _CELL, first, items, begin, end, round(factor), _SPREAD * factor,
+            (_STIFFNESS * factor) ** 2, near, out,
         )  # fmt: skip
 
-    in_bands(rows, height, 16)
+    threading.share(threading.ranges(rows, height, _BAND_ROWS), threading.count(threads))
 
 
 def _buckets(lines: tuple[Floats, Floats, Floats, Floats], width: int, height: int) -> tuple[Ints32, Ints32]:
     rows, columns = int(height // _CELL) + 2, int(width // _CELL) + 2
     counts = np.zeros((rows, columns), np.int32)
     none = np.zeros(1, np.int32)
-    _clean.bucket(*lines, _CELL, counts, none, False)
+    _walls.bucket(*lines, _CELL, counts, none, False)
     ends = np.cumsum(counts.ravel()).astype(np.int32)
     first = np.concatenate([ends, ends[-1:]])[: rows * columns].reshape(rows, columns).copy()
     items = np.zeros(max(1, int(ends[-1])), np.int32)
-    _clean.bucket(*lines, _CELL, first, items, True)
+    _walls.bucket(*lines, _CELL, first, items, True)
     return first, items
