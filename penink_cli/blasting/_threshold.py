@@ -199,7 +199,8 @@ def runs(
 @cython.exceptval(check=False)
 def _count(
     start: cython.int, last: cython.int, each: cython.double, step: cython.double, k: cython.int,
-    width: cython.double, height: cython.double, block: cython.double, px: cython.p_double, py: cython.p_double, ink: cython.double[:, ::1],
+    width: cython.double, height: cython.double, block: cython.double,
+    px: cython.p_double, py: cython.p_double, ink: cython.double[:, ::1],
 ) -> cython.void:  # fmt: skip
     """Add a run's length to the blocks it passes: each of its samples' share, stretched as its piece is if step > 0."""
     j: cython.int

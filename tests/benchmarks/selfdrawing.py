@@ -1,13 +1,20 @@
 """Illustrations that draw themselves: bytes, tone at many sizes and devices, seconds, memory.
 
-The camera man, 96 x 96 and 128 x 128 samples of 64 levels; tone by a low-pass of sigma 1/16 inch. Seconds are CPU time.
+Run as ``python -m tests.benchmarks.selfdrawing [PART]...``; parts are size, grid, tone, poster, textures, places,
+latex, page, refusals. Bundled photographs at 96 samples across, 64 levels; tone by a low-pass of sigma 1/16 inch;
+Ghostscript's seconds are CPU time.
 """
 
 from __future__ import annotations
 
+import shutil
+import statistics
 import subprocess
 import sys
 import tempfile
+from collections.abc import Callable
+from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -16,24 +23,28 @@ from scipy.ndimage import gaussian_filter
 from skimage import data as pictures
 
 from penink_cli.arrangement.detection import detect_edges
+from penink_cli.errors import LimitError
 from penink_cli.model import GreyImage, Illustration, Layer
 from penink_cli.reconstruction import extraction, reduction
 from penink_cli.reconstruction.enlarge import enlarge
 from penink_cli.selfdrawing import data, html, postscript
 from penink_cli.texture_options import find_texture
 from tests.selfdrawing.chromium import Page
+from tests.selfdrawing.pictures import expected_tone, ghostscript, printed
 
 Image.MAX_IMAGE_PIXELS = None
 
 
-def picture(name: str, n: int, **options: float) -> Illustration:
+@cache
+def picture(name: str, n: int = 96, texture: str = "crosshatch", **options: float) -> Illustration:
     """A bundled photograph at n samples across, 4 inches wide."""
     grey = getattr(pictures, name)() / 255.0
-    edges = detect_edges(grey, **options)
+    few = {"sigma": 1.6, "high": 0.3, "low": 0.12, "tolerance": 1.0, "min_length": 18.0}
+    edges = detect_edges(grey, **{**few, **options})
     h = round(n * grey.shape[0] / grey.shape[1])
     samples = reduction.reduce(extraction.extract_samples(grey, edges), edges, n, h)
     values = np.rint(np.clip(samples, 0, 1) * 63).astype(np.uint8)
-    layer = Layer(GreyImage(values, 63), edges, find_texture("crosshatch"))
+    layer = Layer(GreyImage(values, 63), edges, find_texture(texture))
     return Illustration(288.0, 288.0 * h / n, (layer,))
 
 
@@ -70,35 +81,173 @@ def tone(page: np.ndarray, layer: Layer, inches: float) -> tuple[float, float]:
     return 100 * float(np.sqrt((off**2).mean())), 100 * float(off.mean())
 
 
+def size(folder: Path) -> None:
+    """Bytes."""
+    print("samples, edges: bytes of EPS, Level 2, page (at most 20, 26 and 32 KB)")
+    for n, options in ((96, {}), (128, {}), (128, {"min_length": 16.0, "high": 0.26})):
+        p = picture("camera", n, **options)
+        sizes = [len(postscript.write(p)), len(postscript.write(p, "lzw")), len(html.write(p, "camera"))]
+        print(f"  {n} x {n}, {len(data.as_sent(p.layers[0])[1].edges)}: {sizes}")
+    for texture in ("parallel", "crosshatch4", "grain", "stipple", "scribble", "brick", "grass"):
+        p = picture("camera", texture=texture)
+        print(f"  96 x 96, {texture}: {[len(postscript.write(p)), len(html.write(p, 'camera'))]}")
+
+
+def grid(folder: Path) -> None:
+    """The device's tone against enlarge's."""
+    print("tone grid against enlarge: cells within 1.5 of 255, worst")
+    for photo, n in (("camera", 96), ("coins", 96), ("moon", 96), ("camera", 128)):
+        p = picture(photo, n)
+        show = "Tone { (%stdout)(w) file exch writehexstring (\\n) print } forall\n"
+        program = postscript.write(p, "readable").decode().replace("  Gamma 1 ne { Curve } if\n", show)
+        got = ghostscript(program.encode(), "-sDEVICE=pbmraw", "-r600", "-sOutputFile=/dev/null").decode().split()
+        cells = np.array([list(bytes.fromhex(line)) for line in got], float)
+        off = np.abs(cells - expected_tone(p.layers[0], cells.shape[1], cells.shape[0]))
+        print(f"  {photo} {n}: {100 * (off <= 1.5).mean():.3f} %, {off.max():.1f}", flush=True)
+
+
+def row(photo: str, inches: float, dpi: int, folder: Path, texture: str = "crosshatch") -> float:
+    """Print what one printout shows; its bias."""
+    p = picture(photo, texture=texture)
+    got, seconds, memory = run(postscript.write(p), inches / 4, dpi, folder, p.width, p.height)
+    rms, bias = tone(got, p.layers[0], inches)
+    cost = f"{seconds:7.2f} {seconds / (inches * inches * p.height / p.width):7.3f} {memory:6.0f}"
+    print(f"  {texture:11} {photo:7} {inches:4g} {dpi:5} {rms:6.2f} {bias:+6.2f} {cost}", flush=True)
+    return bias
+
+
+HEAD = "  texture     photo   inches  dpi  RMS %  bias %  CPU s  s/sq in  MB"
+
+
+def printouts(folder: Path) -> None:
+    """Tone and speed at many sizes on many devices."""
+    print(HEAD)
+    for photo in ("camera", "coins", "moon"):
+        biases = {at: row(photo, *at, folder) for at in ((1, 600), (2, 600), (4, 300), (4, 600), (4, 1200), (12, 300))}
+        biases[12, 600] = row(photo, 12, 600, folder) if photo == "camera" else biases[12, 300]
+        drift = abs(biases[2, 600] - biases[12, 600])
+        print(f"  drift of bias, {photo}, 2 to 12 in: {drift:.2f} (at most 1)")
+
+
+def poster(folder: Path) -> None:
+    """24 inches: memory (at most 64 MB)."""
+    print(HEAD)
+    row("camera", 24, 300, folder)
+
+
+def textures(folder: Path) -> None:
+    """The other textures."""
+    print(HEAD)
+    for texture in ("parallel", "crosshatch4", "grain", "stipple", "scribble", "brick", "grass"):
+        for photo in ("camera", "moon"):
+            row(photo, 4, 600, folder, texture)
+
+
+def places(folder: Path) -> None:
+    """Rotated, mirrored, stretched, several on a page, twice in a run."""
+    p = picture("camera")
+    eps, half = postscript.write(p), "-144 -144 translate\n"
+    whole = 1 - expected_tone(p.layers[0], 288, 288).mean() / 255
+    for how in ("1 1 scale", "37 rotate", "-1 1 scale", "1 -1 scale", "1.6 0.7 scale", "[1 0.2 0.3 1 0 0] concat"):
+        place = f"%!\n<< /PageSize [720 720] >> setpagedevice 360 360 translate {how} {half}".encode()
+        page, solid = (printed(place + body, folder, 300) for body in (eps, b"0 0 288 288 rectfill showpage\n"))
+        light = page[solid == 0].mean() / 255
+        print(f"  {how:26} tone {100 * (light - whole):+.2f} off, ink outside {(page[solid > 0] < 255).mean():.5f}")
+    three = b"%!\n<< /PageSize [612 792] >> setpagedevice /showpage { } def\n"
+    for move in (b"", b"300 0 translate 72 288 div dup scale", b"0 300 translate 2 dup scale 0 144 translate"):
+        three += b"save " + move + b"\n" + eps + b"\nrestore\n"
+    three += b"count = systemdict /showpage get exec\n"
+    left = ghostscript(three, "-sDEVICE=pbmraw", "-r150", "-sOutputFile=/dev/null").decode().split()
+    print(f"  three on a page: left on the stack {left}")
+    for pattern in ("a%d.pbm",):
+        ghostscript(b"%!\n" + eps + b"\n" + eps, "-sDEVICE=pbmraw", "-r300", f"-sOutputFile={folder / pattern}")
+    same = (folder / "a1.pbm").read_bytes() == (folder / "a2.pbm").read_bytes()
+    print(f"  twice in a run: {'the same bytes' if same else 'DIFFERENT'}")
+
+
+def latex(folder: Path) -> None:
+    """One EPS at 1, 3 and 6 inches in a LaTeX document, through dvips."""
+    if not (shutil.which("latex") and shutil.which("dvips")):
+        print("  latex is not installed: left out")
+        return
+    p = picture("camera")
+    (folder / "camera.eps").write_bytes(postscript.write(p))
+    (folder / "t.tex").write_text(
+        r"\documentclass{article}\usepackage[dvips]{graphicx}\textwidth6in\textheight7in\oddsidemargin0in"
+        r"\topmargin-1in\headheight0pt\headsep0pt\topskip0pt\parindent0pt\pagestyle{empty}\begin{document}"
+        + r"\newpage ".join(rf"\includegraphics[width={n}in]{{camera.eps}}" for n in (1, 3, 6))
+        + r"\end{document}"
+    )
+    for command in (["latex", "-interaction=nonstopmode", "t.tex"], ["dvips", "-q", "-o", "t.ps", "t.dvi"]):
+        subprocess.run(command, cwd=folder, check=True, capture_output=True)
+    ghostscript((folder / "t.ps").read_bytes(), "-sDEVICE=pbmraw", "-r600", f"-sOutputFile={folder / 't%d.pbm'}")
+    for number, inches in enumerate((1, 3, 6), 1):
+        page = np.asarray(Image.open(folder / f"t{number}.pbm").convert("L")) / 255.0
+        y, x = np.nonzero(page < 0.5)
+        cut = page[y.min() :, x.min() :][: inches * 600, : inches * 600]
+        strokes = int((cut[:, 1:] < cut[:, :-1]).sum() / len(cut))
+        rms, bias = tone(cut, p.layers[0], inches)
+        print(f"  {inches} in: {x.max() - x.min() + 1} pixels wide of {600 * inches}, {strokes} strokes across,"
+              f" tone RMS {rms:.2f}, bias {bias:+.2f}")  # fmt: skip
+
+
+def page(folder: Path) -> None:
+    """Repainting, zoom, console and network of the page in Chromium."""
+    # with what is drawn read back, or it would only be promised
+    timed = (
+        "(() => {%s; const began = performance.now(); repaint(); canvas.getContext('2d').getImageData(0, 0, 1, 1);"
+        "return performance.now() - began})()"
+    )
+    for photo in ("camera", "coins"):
+        path = folder / "page.html"
+        path.write_bytes(html.write(picture(photo), photo))
+        with Page(path) as shown:
+            for zoom in (1, 4, 24):
+                corner = -512 * (zoom - 1)
+                still = f"view.zoom = {zoom}, view.x = view.y = {corner}"
+                shown.evaluate(timed % still)
+                times = [shown.evaluate(timed % still) for _ in range(9)]
+                moved = [shown.evaluate(timed % f"{still} - {37 * k}") for k in range(9)]
+                fresh = [shown.evaluate(timed % f"{still}, view.zoom = {zoom * (1 + k / 50)}") for k in range(9)]
+                shown.evaluate(f"({still}, repaint())")
+                dark = shown.screenshot()[64:960, 64:900] < 128
+                width = dark.sum() / (dark[:, 1:] != dark[:, :-1]).sum() * 2
+                print(f"  {photo}, 1024 x 1024, zoom {zoom}: repaint {statistics.median(times):.0f} ms the same view,"
+                      f" {statistics.median(moved):.0f} moved, {statistics.median(fresh):.0f} zoomed (medians of 9);"
+                      f" ink {dark.mean():.3f}, strokes {width:.2f} pixels across", flush=True)  # fmt: skip
+            console = [line for line in shown.console if "willReadFrequently" not in line]
+            print(f"  console: {console}; fetched besides the page: {len(shown.requests) - 1}")
+
+
+def refusals(folder: Path) -> None:
+    """Too many samples, and damage."""
+    p = picture("camera")
+    for w, h in ((254, 254), (255, 20), (20, 255)):
+        layer = replace(p.layers[0], samples=GreyImage(np.zeros((h, w), np.uint8), 63), edges=None)
+        try:
+            print(f"  {w} x {h} samples: {len(postscript.write(replace(p, layers=(layer,))))} bytes")
+        except LimitError as error:
+            print(f"  {w} x {h} samples: {error}")
+    damaged = folder / "a.penink"
+    damaged.write_bytes(b"PK\x03\x04 nothing")
+    for command in (["to-ps", "--self"], ["to-html"]):
+        call = [sys.executable, "-m", "penink_cli", *command, str(damaged)]
+        done = subprocess.run(call, capture_output=True, text=True, check=False)
+        print(f"  {' '.join(command)}: exit {done.returncode}, {done.stderr.strip()}")
+
+
+PARTS: dict[str, Callable[[Path], None]] = {
+    "size": size, "grid": grid, "tone": printouts, "poster": poster, "textures": textures, "places": places,
+    "latex": latex, "page": page, "refusals": refusals,
+}  # fmt: skip
+
+
 def main() -> None:
     """Print the figures."""
-    with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-        for n, high in ((96, 0.3), (128, 0.3)):
-            p = picture("camera", n, sigma=1.6, high=high, low=0.12, tolerance=1.0, min_length=18.0)
-            eps = postscript.write(p)
-            page = html.write(p, "camera")
-            edges = len(data.as_sent(p.layers[0])[1].edges)
-            print(f"{n} x {n}, {edges} edges: EPS {len(eps)} bytes, page {len(page)} bytes")
-        print("inches  dpi  RMS %  bias %  CPU s  s/sq in  MB")
-        for photo in ("camera", "coins", "moon"):
-            p = picture(photo, 96, sigma=1.6, high=0.3, low=0.12, tolerance=1.0, min_length=18.0)
-            eps = postscript.write(p)
-            sizes = ((1, 600), (2, 600), (4, 300), (4, 600), (4, 1200), (12, 300))
-            for inches, dpi in (*sizes, (24, 300)) if photo == "camera" else sizes:
-                got, seconds, memory = run(eps, inches / 4, dpi, folder, p.width, p.height)
-                rms, bias = tone(got, p.layers[0], inches)
-                area = inches * inches * p.height / p.width
-                cost = f"{seconds:7.2f} {seconds / area:7.3f} {memory:6.0f}"
-                print(f"{photo:7} {inches:3} {dpi:5} {rms:6.2f} {bias:+6.2f} {cost}", flush=True)
-        path = folder / "camera.html"
-        path.write_bytes(html.write(picture("camera", 96, sigma=1.6, high=0.3, low=0.12, tolerance=1.0), "camera"))
-        with Page(path) as page_of:
-            for zoom in (1, 4, 24):
-                view = f"view.zoom = {zoom}, view.x = view.y = {-400 * (zoom - 1)}"
-                times = [page_of.evaluate(f"({view}, repaint(), painted.ms)") for _ in range(6)]
-                print(f"Chromium, 1024 x 1024, zoom {zoom}: repaint {min(times):.0f} ms, the best of 6")
-            print(f"console: {page_of.console}; fetched: {len(page_of.requests) - 1}")
+    for part in sys.argv[1:] or PARTS:
+        print(f"{part}: {PARTS[part].__doc__}")
+        with tempfile.TemporaryDirectory() as name:
+            PARTS[part](Path(name))
 
 
 if __name__ == "__main__":

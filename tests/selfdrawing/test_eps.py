@@ -11,6 +11,7 @@ import pytest
 from penink_cli.errors import LimitError
 from penink_cli.model import GreyImage, OutlineChoice
 from penink_cli.selfdrawing import packer, postscript
+from penink_cli.texture_options import find_texture
 from tests.selfdrawing.pictures import expected_tone, ghostscript, illustration, printed
 
 CROP = ("-dEPSCrop",)
@@ -77,6 +78,19 @@ def test_three_on_a_page_leave_stacks_and_dictionaries_as_found(eps):
         + b"\ncount = countdictstack before sub = = flush\n", "-sDEVICE=pbmraw", "-r300", "-sOutputFile=/dev/null",
     )  # fmt: skip
     assert out.split() == [b"1", b"0", b"7"]
+
+
+def test_twice_in_a_run_it_draws_the_same(eps, tmp_path):
+    ghostscript(b"%!\n" + eps + b"\n" + eps, "-sDEVICE=pbmraw", "-r150", f"-sOutputFile={tmp_path / '%d.pbm'}")
+    first, second = ((tmp_path / f"{n}.pbm").read_bytes() for n in (1, 2))
+    assert first == second and len(set(first)) > 20
+
+
+@pytest.mark.parametrize("name", ["stipple", "brick", "grain"])
+def test_every_kind_of_texture_keeps_its_tone(name, tmp_path):
+    picture = illustration(texture=find_texture(name))
+    wanted = expected_tone(picture.layers[0], 108, 108).mean() / 255
+    assert ink(printed(postscript.write(picture), tmp_path, 300, *CROP)) == pytest.approx(wanted, abs=0.03)
 
 
 def test_the_structuring_conventions(eps):
