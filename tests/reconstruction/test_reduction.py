@@ -26,3 +26,29 @@ def test_a_slope_is_kept():
 
 def test_any_size():
     assert reduce(np.full((17, 23), 0.5), EdgeList(23, 17), 5, 3).shape == (3, 5)
+
+
+def test_the_fit_is_the_same_for_any_number_of_threads():
+    random = np.random.default_rng(7)
+    photo = random.random((90, 120)).astype(np.float32)
+    ends = np.column_stack([random.uniform(1, 119, 40), random.uniform(1, 89, 40)])
+    ends = ends[np.argsort(ends[:, 0])]  # edges left to right, which cannot cross
+    edges = EdgeList(120, 90, ends, np.array([[k, k + 1] for k in range(0, 38)]))
+    one, two, five = (reduce(photo, edges, 60, 45, photo=photo, fit="lsq", threads=n) for n in (1, 2, 5))
+    assert np.array_equal(one, two) and np.array_equal(one, five)
+
+
+def test_the_fit_undoes_what_the_camera_did():
+    # A blurred step, sampled on a grid that has no sample on the blur's own scale.
+    from scipy.ndimage import gaussian_filter
+
+    from penink_cli.reconstruction.enlarge import reconstruct
+
+    sharp = np.where(np.arange(64) < 29.0, 0.2, 0.8) * np.ones((48, 1))
+    photo = gaussian_filter(sharp, 0.9).astype(np.float32)
+    edges = EdgeList(64, 48, np.array([[29.0, 0.0], [29.0, 48.0]]), np.array([[0, 1]]))
+    wrong = []
+    for fit in ("none", "lsq"):
+        again = reconstruct(reduce(photo, edges, 16, 12, photo=photo, fit=fit, blur=0.9).astype(float), edges, 64, 48)
+        wrong.append(np.abs(again - sharp)[:, 22:36].max())
+    assert wrong[1] < 0.5 * wrong[0] and wrong[1] < 0.03
