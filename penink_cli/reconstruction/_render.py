@@ -445,7 +445,7 @@ def blend(
     for s in range(16):
         desk.mixed[s] = desk.shaded[s] = 0
     if only_b:
-            add_up(desk, f, xb, stride, yb, tile.ny, top, bottom)
+        add_up(desk, f, xb, stride, yb, tile.ny, top, bottom)
     else:
         add_up(desk, f, xc, stride, yc, tile.ny, top, bottom)
     for k in range(n):

@@ -1,6 +1,7 @@
 cimport cython
 
-from penink_cli.reconstruction._paths cimport Finder, Scene
+from penink_cli.reconstruction._scene cimport Scene
+from penink_cli.reconstruction._search cimport Finder
 
 @cython.final
 cdef class Tile:

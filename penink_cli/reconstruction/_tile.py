@@ -11,7 +11,8 @@ import cython
 from cython.cimports.libc.math import fabs, fabsf, sqrt
 from cython.cimports.libc.stdlib import free, malloc, realloc
 from cython.cimports.penink_cli.arrangement._predicates import orient
-from cython.cimports.penink_cli.reconstruction._paths import Finder, side_of_query, side_of_vertex
+from cython.cimports.penink_cli.reconstruction._scene import side_of_query, side_of_vertex
+from cython.cimports.penink_cli.reconstruction._search import Finder
 
 COMPILED = cython.compiled
 

@@ -5,7 +5,7 @@ Slower than the tiles of an enlargement, and free of their conditions: any point
 """
 
 import cython
-from cython.cimports.penink_cli.reconstruction._paths import Finder
+from cython.cimports.penink_cli.reconstruction._search import Finder
 
 COMPILED = cython.compiled
 

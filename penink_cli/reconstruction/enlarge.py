@@ -17,7 +17,7 @@ import numpy.typing as npt
 
 from penink_cli.errors import ParameterError
 from penink_cli.model import EdgeList, Floats, GreyImage
-from penink_cli.reconstruction import _paths, _render, _separable, _tile, _weights
+from penink_cli.reconstruction import _render, _separable, _tile, _weights, paths
 from penink_cli.reconstruction import threads as threading
 from penink_cli.reconstruction.kernels import is_bspline, taps
 from penink_cli.reconstruction.lattice import TILE, Axis, axis, centres
@@ -261,4 +261,4 @@ class _Reduction:
         return np.floor(np.clip(out, 0.0, self.maxval) + 0.5).astype(self.stored)
 
 
-COMPILED = _paths.COMPILED and _render.COMPILED and _separable.COMPILED and _tile.COMPILED and _weights.COMPILED
+COMPILED = paths.COMPILED and _render.COMPILED and _separable.COMPILED and _tile.COMPILED and _weights.COMPILED

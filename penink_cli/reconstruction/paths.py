@@ -8,10 +8,10 @@ import numpy as np
 import numpy.typing as npt
 
 from penink_cli.model import EdgeList, Floats
-from penink_cli.reconstruction import _paths
+from penink_cli.reconstruction import _cells, _nodes, _scene, _search
 from penink_cli.reconstruction import threads as threading
 
-COMPILED = _paths.COMPILED
+COMPILED = _cells.COMPILED and _nodes.COMPILED and _scene.COMPILED and _search.COMPILED
 
 BLOCK = 2.0 * math.sqrt(2.0)  # how far a point can be from a sample under its 4 × 4 kernel
 
@@ -54,23 +54,26 @@ class Paths:
         if edges is None:
             edges = EdgeList(width, height)
         vertices = sample_units(edges.vertices, width, height, (edges.width, edges.height))
-        self.scene = _paths.Scene(vertices, edges.edges, width, height, self.limit)
+        self.scene = _scene.Scene(vertices, edges.edges, width, height, self.limit)
+        if not self.empty:
+            _cells.sort_edges(self.scene)
+            _nodes.find(self.scene)
 
     @property
     def empty(self) -> bool:
         """Whether there is no edge at all."""
         return self.scene.n_edges == 0
 
-    def finder(self, *, closed: bool = False, rows: tuple[int, int] | None = None) -> _paths.Finder:
-        """A search for one thread; see `_paths.Finder`."""
+    def finder(self, *, closed: bool = False, rows: tuple[int, int] | None = None) -> _search.Finder:
+        """A search for one thread; see `_search.Finder`."""
         first, last = rows or (0, self.height)
-        return _paths.Finder(self.scene, first, last, self.limit, closed)
+        return _search.Finder(self.scene, first, last, self.limit, closed)
 
     def visible(self, p: Floats, q: Floats) -> npt.NDArray[np.bool_]:
         """(n,) whether p[k] sees q[k] across no edge; p, q: (n, 2)."""
         p, q = np.ascontiguousarray(p, np.float64), np.ascontiguousarray(q, np.float64)
         out = np.empty(len(p), np.intc)
-        _paths.visible(self.scene, p, q, 0, len(p), out)
+        _scene.visible(self.scene, p, q, 0, len(p), out)
         return out.astype(bool)
 
     def lengths(self, p: Floats, q: Floats, limit: float | None = None, threads: int | None = None) -> Floats:
@@ -80,7 +83,7 @@ class Paths:
         out = np.empty(len(p))
 
         def run(begin: int, end: int) -> None:
-            _paths.path_lengths(self.finder(rows=(0, 0)), p, q, limit, begin, end, out)
+            _search.path_lengths(self.finder(rows=(0, 0)), p, q, limit, begin, end, out)
 
         threading.share(threading.ranges(run, len(p), 4096), threading.count(threads))
         return out

@@ -1,8 +1,8 @@
 """How fast and how true enlargement is: `python -m tests.benchmarks.reconstruction [PART …]`.
 
-Parts: calls, photos, process, large, preprocess, accuracy, growth, table1. Times are given as ratios to Pillow's BICUBIC
-of the same 8-bit picture, measured in turns with it in the same run, the best of several. Two threads can be no faster
-than the machine lets any two be: `calls` first prints how much that is in this run.
+Parts: calls, photos, process, large, preprocess, accuracy, growth, table1. Times are given as ratios to Pillow's
+BICUBIC of the same 8-bit picture, measured in turns with it in the same run, the best of several. Two threads can be no
+faster than the machine lets any two be: `calls` first prints how much that is in this run.
 """
 
 from __future__ import annotations

@@ -1,5 +1,16 @@
 cimport cython
 
+cdef enum:
+    CROWD = 48  # edges in one cell from which on it gets a grid of its own
+    FINE = 32  # cells of that grid along a side
+    BLOCK = 2  # nodes are sorted into blocks of 2² × 2² cells: fewer to pass over than cells
+
+cdef double PAD  # cells are closed, and this much wider than that: rounding is far below it
+
+cdef double* doubles(double[::1] array)
+cdef int* ints(int[::1] array)
+cdef void span(double ax, double ay, double bx, double by, int row, double* left, double* right) noexcept nogil
+cdef int within(double x, int n) noexcept nogil
 cdef int side_of_query(double ax, double ay, double bx, double by, double qx, double qy) noexcept nogil
 cdef int side_of_vertex(double px, double py, double qx, double qy, double ax, double ay) noexcept nogil
 
@@ -42,33 +53,3 @@ cdef class Scene:
     cdef bint meets(self, int e, double px, double py, double qx, double qy, int u, int v) noexcept nogil
     cdef bint bends_for(self, int node, double qx, double qy) noexcept nogil
     cdef bint clear(self, double x0, double y0, double x1, double y1) noexcept nogil
-
-@cython.final
-cdef class Finder:
-    cdef readonly Scene scene
-    cdef int row0, row1
-    cdef bint closed
-    cdef double reach, radius, from_x, from_y
-    cdef int* start
-    cdef int* count
-    cdef int* pool_node
-    cdef double* pool_length
-    cdef Py_ssize_t pool_used, pool_size
-    cdef double* distance
-    cdef int* stamp
-    cdef int now
-    cdef int* heap_node
-    cdef double* heap_key
-    cdef int heap_used, heap_size
-    cdef int* done
-    cdef int n_done
-    cdef double* alpha
-    cdef int alpha_size
-    cdef void push(self, int node, double key) noexcept nogil
-    cdef bint worth(self, double x, double y, double length) noexcept nogil
-    cdef void first_bends(self, double qx, double qy, double reach) noexcept nogil
-    cdef void spread(self, double reach) noexcept nogil
-    cdef int bends_of(self, int i, int j) noexcept nogil
-    cdef bint attenuate(self, double px, double py, int i0, int i1, int j0, int j1, double r) noexcept nogil
-    cdef double last_leg(self, double qx, double qy, double limit) noexcept nogil
-    cdef double length(self, double px, double py, double qx, double qy, double limit) noexcept nogil

@@ -1,0 +1,262 @@
+# cython: language_level=3, boundscheck=False, wraparound=False, cdivision=True
+"""The path graph of a scene: its nodes, where a path can bend, and the arcs between them (section 2.2).
+
+A *node* is a vertex on the one side where a path can bend round it: its reflex sector runs,
+turning positively, from the edge to `low` to the edge to `high`. A shortest path is taut, so
+a leg may meet a node only where both edges lie on one side of the leg's line or on it. That
+one test replaces "within the sector" and prunes nearly all bends of a smooth chain.
+"""
+
+import cython
+from cython.cimports.libc.math import sqrt
+from cython.cimports.libc.stdlib import malloc, realloc
+from cython.cimports.penink_cli.arrangement._predicates import orient
+from cython.cimports.penink_cli.reconstruction._scene import BLOCK, Scene, doubles, ints
+
+COMPILED = cython.compiled
+
+
+def find(scene: Scene) -> None:
+    """Fill in the nodes and the arcs of a scene whose edges are sorted into cells."""
+    import numpy as np
+
+    nodes = np.empty((3, 2 * scene.n_vertices), np.intc)
+    scene.node_vertex = ints(nodes[0])
+    scene.node_low = ints(nodes[1])
+    scene.node_high = ints(nodes[2])
+    star_start = np.zeros(scene.n_vertices + 1, np.intc)
+    star = np.empty(2 * scene.n_edges, np.intc)
+    scene.star_start = ints(star_start)
+    scene.star = ints(star)
+    find_nodes(scene)
+    scene.node_across = (scene.gw >> BLOCK) + 1
+    node_start = np.zeros(scene.node_across * ((scene.gh >> BLOCK) + 1) + 1, np.intc)
+    node_sorted = np.empty(max(1, scene.n_nodes), np.intc)
+    places = np.empty((2, max(1, scene.n_nodes)))
+    scene.node_start = ints(node_start)
+    scene.node_sorted = ints(node_sorted)
+    scene.node_x = doubles(places[0])
+    scene.node_y = doubles(places[1])
+    bucket_nodes(scene)
+    arc_start = np.zeros(scene.n_nodes + 1, np.intc)
+    scene.arc_start = ints(arc_start)
+    scene.arrays += [nodes, star_start, star, node_start, node_sorted, places, arc_start]
+    with cython.nogil:
+        find_arcs(scene)
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def distance(ax: cython.double, ay: cython.double, bx: cython.double, by: cython.double) -> cython.double:
+    """Between two points."""
+    return sqrt((ax - bx) * (ax - bx) + (ay - by) * (ay - by))
+
+
+@cython.cfunc
+def find_nodes(scene: Scene) -> cython.void:
+    """The nodes: vertices strictly inside the frame with a sector of π or more between neighbouring edges.
+
+    Seen from the first edge d at a vertex the others turn left, turn right or go straight on. The outermost to
+    either side bound the sector, if there is one. A sector of exactly π carries paths along it, never a bend.
+    """
+    v: cython.int
+    k: cython.int
+    d: cython.int
+    t: cython.int
+    s: cython.int
+    first: cython.p_int = scene.star_start
+    others: cython.p_int = scene.star
+    place: cython.int
+    n: cython.int = 0
+    x: cython.double
+    y: cython.double
+    left: cython.int
+    right: cython.int
+    on: cython.int
+    for k in range(scene.n_edges):
+        first[scene.ea[k]] += 1
+        first[scene.eb[k]] += 1
+    place = 0
+    for v in range(scene.n_vertices + 1):
+        k = first[v]
+        first[v] = place
+        place += k
+    for k in range(scene.n_edges):
+        others[first[scene.ea[k]]] = scene.eb[k]
+        first[scene.ea[k]] += 1
+        others[first[scene.eb[k]]] = scene.ea[k]
+        first[scene.eb[k]] += 1
+    for v in range(scene.n_vertices, 0, -1):
+        first[v] = first[v - 1]
+    first[0] = 0
+    for v in range(scene.n_vertices):
+        x = scene.vx[v]
+        y = scene.vy[v]
+        if first[v] == first[v + 1] or x <= -0.5 or y <= -0.5 or x >= scene.width - 0.5 or y >= scene.height - 0.5:
+            continue
+        d = others[first[v]]
+        left = right = on = -1
+        for k in range(first[v] + 1, first[v + 1]):
+            t = others[k]
+            s = orient(x, y, scene.vx[d], scene.vy[d], scene.vx[t], scene.vy[t])
+            if s == 0:
+                on = t
+            elif s > 0:
+                if left < 0 or orient(x, y, scene.vx[left], scene.vy[left], scene.vx[t], scene.vy[t]) > 0:
+                    left = t
+            elif right < 0 or orient(x, y, scene.vx[right], scene.vy[right], scene.vx[t], scene.vy[t]) < 0:
+                right = t
+        if on >= 0:
+            if left < 0:
+                n = add_node(scene, n, v, d, on)
+            if right < 0:
+                n = add_node(scene, n, v, on, d)
+        elif left < 0 or right < 0:
+            n = add_node(scene, n, v, d if left < 0 else left, d if right < 0 else right)
+        elif orient(x, y, scene.vx[right], scene.vy[right], scene.vx[left], scene.vy[left]) >= 0:
+            n = add_node(scene, n, v, left, right)
+    scene.n_nodes = n
+
+
+@cython.cfunc
+@cython.exceptval(check=False)
+def add_node(scene: Scene, n: cython.int, v: cython.int, low: cython.int, high: cython.int) -> cython.int:
+    """Enter one node; how many there are then."""
+    scene.node_vertex[n] = v
+    scene.node_low[n] = low
+    scene.node_high[n] = high
+    return n + 1
+
+
+@cython.cfunc
+def bucket_nodes(scene: Scene) -> cython.void:
+    """Sort the nodes into the blocks of cells they lie in."""
+    n: cython.int
+    k: cython.int
+    place: cython.int = 0
+    for n in range(scene.n_nodes):
+        scene.node_start[home(scene, n)] += 1
+    for k in range(scene.node_across * ((scene.gh >> BLOCK) + 1) + 1):
+        place += scene.node_start[k]
+        scene.node_start[k] = place
+    for n in range(scene.n_nodes - 1, -1, -1):
+        k = home(scene, n)
+        scene.node_start[k] -= 1
+        k = scene.node_start[k]
+        scene.node_sorted[k] = n
+        scene.node_x[k] = scene.vx[scene.node_vertex[n]]
+        scene.node_y[k] = scene.vy[scene.node_vertex[n]]
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def home(scene: Scene, n: cython.int) -> cython.int:
+    """The block a node lies in."""
+    v: cython.int = scene.node_vertex[n]
+    return (scene.row_of(scene.vy[v]) >> BLOCK) * scene.node_across + (scene.column_of(scene.vx[v]) >> BLOCK)
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def find_arcs(scene: Scene) -> cython.void:
+    """The arcs of the path graph: taut at both ends, unobstructed, no third vertex touched, at most `reach` long."""
+    u: cython.int
+    v: cython.int
+    n: cython.int
+    row: cython.int
+    k: cython.int
+    used: cython.int = 0
+    size: cython.int = 64
+    x: cython.double
+    y: cython.double
+    d: cython.double
+    c0: cython.int
+    c1: cython.int
+    scene.arc_to = cython.cast(cython.p_int, malloc(size * cython.sizeof(cython.int)))
+    scene.arc_length = cython.cast(cython.p_double, malloc(size * cython.sizeof(cython.double)))
+    for n in range(scene.n_nodes):
+        scene.arc_start[n] = used
+        u = scene.node_vertex[n]
+        x = scene.vx[u]
+        y = scene.vy[u]
+        c0 = scene.column_of(x - scene.reach) >> BLOCK
+        c1 = (scene.column_of(x + scene.reach) >> BLOCK) + 1
+        for row in range(scene.row_of(y - scene.reach) >> BLOCK, (scene.row_of(y + scene.reach) >> BLOCK) + 1):
+            for k in range(
+                scene.node_start[row * scene.node_across + c0], scene.node_start[row * scene.node_across + c1]
+            ):
+                v = scene.node_sorted[k]
+                d = arc(scene, n, v)
+                if d < 0.0 or d > scene.reach:
+                    continue
+                if used == size:
+                    size *= 2
+                    scene.arc_to = cython.cast(cython.p_int, realloc(scene.arc_to, size * cython.sizeof(cython.int)))
+                    scene.arc_length = cython.cast(
+                        cython.p_double, realloc(scene.arc_length, size * cython.sizeof(cython.double))
+                    )
+                scene.arc_to[used] = v
+                scene.arc_length[used] = d
+                used += 1
+    scene.arc_start[scene.n_nodes] = used
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def arc(scene: Scene, m: cython.int, n: cython.int) -> cython.double:
+    """Length of the arc between two nodes, −1 where there is none."""
+    u: cython.int = scene.node_vertex[m]
+    v: cython.int = scene.node_vertex[n]
+    d: cython.double
+    if u == v:
+        return -1.0
+    d = distance(scene.vx[u], scene.vy[u], scene.vx[v], scene.vy[v])
+    if d > scene.reach:
+        return -1.0
+    if not (taut(scene, m, v) and taut(scene, n, u)):
+        return -1.0
+    # Along a common edge the sectors of both ends must lie on the same side of it. A sector touches an edge of its
+    # vertex only where the edge bounds it.
+    if neighbours(scene, u, v):
+        if (scene.node_low[m] == v and scene.node_high[n] == u) or (scene.node_high[m] == v and scene.node_low[n] == u):
+            return d
+        return -1.0
+    return d if scene.joined(u, v) else -1.0
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def neighbours(scene: Scene, u: cython.int, v: cython.int) -> cython.bint:
+    """Whether an edge joins two vertices, by the one that has fewer."""
+    i: cython.int
+    t: cython.int
+    if scene.star_start[u + 1] - scene.star_start[u] > scene.star_start[v + 1] - scene.star_start[v]:
+        t = u
+        u = v
+        v = t
+    for i in range(scene.star_start[u], scene.star_start[u + 1]):
+        if scene.star[i] == v:
+            return True
+    return False
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def taut(scene: Scene, node: cython.int, u: cython.int) -> cython.bint:
+    """Whether a shortest path between vertices may run from this node towards the vertex u."""
+    v: cython.int = scene.node_vertex[node]
+    a: cython.int = scene.node_low[node]
+    b: cython.int = scene.node_high[node]
+    if a == b or u == a or u == b:  # along an edge of its own: the commonest tie by far, and dear to decide exactly
+        return True
+    return (
+        orient(scene.vx[v], scene.vy[v], scene.vx[a], scene.vy[a], scene.vx[u], scene.vy[u])
+        * orient(scene.vx[v], scene.vy[v], scene.vx[b], scene.vy[b], scene.vx[u], scene.vy[u])
+        >= 0
+    )

@@ -1,0 +1,327 @@
+# cython: language_level=3, boundscheck=False, wraparound=False, cdivision=True
+"""Which points see each other past the discontinuity edges (section 2.2).
+
+Everything is in sample units: sample (row i, column j) is the point (j, i). Decisions are
+exact. A *query* (output pixel or sample) stands for p + (ε, ε²), so it is never on an edge,
+on a vertex or in line with one; a tie goes by the sign of the next power of ε.
+"""
+
+import cython
+from cython.cimports.libc.stdlib import free
+from cython.cimports.penink_cli.arrangement._predicates import orient
+
+COMPILED = cython.compiled
+
+PAD = 1e-7
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def tie(x: cython.double, y: cython.double) -> cython.int:
+    """Sign of (x, y) × (ε, ε²) reversed in no way: −sign(y), else sign(x)."""
+    if y != 0.0:
+        return -1 if y > 0.0 else 1
+    if x != 0.0:
+        return 1 if x > 0.0 else -1
+    return 0
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def side_of_query(
+    ax: cython.double, ay: cython.double, bx: cython.double, by: cython.double, qx: cython.double, qy: cython.double
+) -> cython.int:
+    """Side of the line of the vertices a → b on which the query q lies."""
+    s: cython.int = orient(ax, ay, bx, by, qx, qy)
+    return s if s != 0 else tie(bx - ax, by - ay)
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def side_of_vertex(
+    px: cython.double, py: cython.double, qx: cython.double, qy: cython.double, ax: cython.double, ay: cython.double
+) -> cython.int:
+    """Side of the line of the queries p → q on which the vertex a lies."""
+    s: cython.int = orient(px, py, qx, qy, ax, ay)
+    return s if s != 0 else -tie(qx - px, qy - py)
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def span(
+    ax: cython.double,
+    ay: cython.double,
+    bx: cython.double,
+    by: cython.double,
+    row: cython.int,
+    left: cython.p_double,
+    right: cython.p_double,
+) -> cython.void:
+    """The x range of a segment within one row of cells, a little too wide."""
+    x0: cython.double = ax
+    x1: cython.double = bx
+    low: cython.double = row - PAD
+    high: cython.double = row + 1 + PAD
+    if ay < low:
+        x0 = ax + (bx - ax) * ((low - ay) / (by - ay))
+    elif ay > high:
+        x0 = ax + (bx - ax) * ((high - ay) / (by - ay))
+    if by < low:
+        x1 = ax + (bx - ax) * ((low - ay) / (by - ay))
+    elif by > high:
+        x1 = ax + (bx - ax) * ((high - ay) / (by - ay))
+    left[0] = (x0 if x0 < x1 else x1) - PAD
+    right[0] = (x1 if x0 < x1 else x0) + PAD
+
+
+@cython.final  # calls are direct, and inlined
+@cython.cclass
+class Scene:
+    """Edges in sample units, bucketed by unit cell; the nodes, and the arcs between them up to `reach` long.
+
+    A new one holds the edges alone: `_cells.sort_edges` and then `_nodes.find` fill in the rest.
+    """
+
+    def __init__(self, vertices, edges, width: cython.int, height: cython.int, reach: cython.double):
+        import numpy as np
+
+        self.width = width
+        self.height = height
+        self.reach = reach
+        self.n_edges = len(edges)
+        self.n_vertices = len(vertices)
+        self.gw = width + 1
+        self.gh = height + 1
+        x = np.ascontiguousarray(vertices[:, 0], np.float64)
+        y = np.ascontiguousarray(vertices[:, 1], np.float64)
+        a = np.ascontiguousarray(edges[:, 0], np.intc)
+        b = np.ascontiguousarray(edges[:, 1], np.intc)
+        self.arrays = [x, y, a, b]
+        if self.n_edges:
+            self.vx = doubles(x)
+            self.vy = doubles(y)
+            self.ea = ints(a)
+            self.eb = ints(b)
+
+    def __dealloc__(self):
+        free(self.arc_to)
+        free(self.arc_length)
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def row_of(self, y: cython.double) -> cython.int:
+        """Row of the grid of cells, in range; row 0 is the half cell along the border."""
+        y += 1.0  # what rounding does here is far within the padding of the cells
+        return 0 if y < 0.0 else (self.gh - 1 if y >= self.gh else cython.cast(cython.int, y))
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def column_of(self, x: cython.double) -> cython.int:
+        """Column of the grid of cells, in range."""
+        x += 1.0
+        return 0 if x < 0.0 else (self.gw - 1 if x >= self.gw else cython.cast(cython.int, x))
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def clear(self, x0: cython.double, y0: cython.double, x1: cython.double, y1: cython.double) -> cython.bint:
+        """True if no edge comes near the rectangle."""
+        c0: cython.int = self.column_of(x0)
+        c1: cython.int = self.column_of(x1)
+        row: cython.int
+        for row in range(self.row_of(y0), self.row_of(y1) + 1):
+            if self.cell_start[row * self.gw + c1 + 1] > self.cell_start[row * self.gw + c0]:
+                return False
+        return True
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def sees(self, px: cython.double, py: cython.double, qx: cython.double, qy: cython.double) -> cython.bint:
+        """Whether two queries see each other."""
+        if px == qx and py == qy:
+            return True
+        return not self.obstructed(px, py, qx, qy, -1, -1)
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def sees_vertex(self, qx: cython.double, qy: cython.double, v: cython.int) -> cython.bint:
+        """Whether no edge lies between a query and a vertex; the edges at the vertex are `bends_for`'s concern."""
+        return not self.obstructed(qx, qy, self.vx[v], self.vy[v], -1, v)
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def joined(self, u: cython.int, v: cython.int) -> cython.bint:
+        """Whether the open segment between two vertices that share no edge meets neither edge nor vertex."""
+        return not self.obstructed(self.vx[u], self.vy[u], self.vx[v], self.vy[v], u, v)
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def obstructed(
+        self,
+        px: cython.double,
+        py: cython.double,
+        qx: cython.double,
+        qy: cython.double,
+        u: cython.int,
+        v: cython.int,
+    ) -> cython.bint:
+        """Whether an edge meets the segment from p to q, which are the vertices u and v, or queries where those are −1.
+
+        Walks the cells that the segment touches, in a crowded cell those of its own finer grid.
+        """
+        row: cython.int
+        column: cython.int
+        k: cython.int
+        fine: cython.int
+        n: cython.int
+        c0: cython.int
+        c1: cython.int
+        left: cython.double = 0.0
+        right: cython.double = 0.0
+        low: cython.double = py if py < qy else qy
+        high: cython.double = qy if py < qy else py
+        x0: cython.double
+        y0: cython.double
+        x1: cython.double
+        y1: cython.double
+        for row in range(self.row_of(low - PAD), self.row_of(high + PAD) + 1):
+            span(px, py, qx, qy, row - 1, cython.address(left), cython.address(right))
+            c0 = row * self.gw + self.column_of(left)
+            c1 = row * self.gw + self.column_of(right)
+            if self.n_crowded == 0 or self.cell_start[c1 + 1] - self.cell_start[c0] < CROWD:
+                for k in range(self.cell_start[c0], self.cell_start[c1 + 1]):
+                    if self.meets(self.cell_edge[k], px, py, qx, qy, u, v):
+                        return True
+                continue
+            for column in range(c0, c1 + 1):
+                if self.crowded[column] < 0:
+                    for k in range(self.cell_start[column], self.cell_start[column + 1]):
+                        if self.meets(self.cell_edge[k], px, py, qx, qy, u, v):
+                            return True
+                    continue
+                n = FINE
+                x0 = (px - (column - row * self.gw - 1)) * n
+                y0 = (py - (row - 1)) * n
+                x1 = (qx - (column - row * self.gw - 1)) * n
+                y1 = (qy - (row - 1)) * n
+                low = y0 if y0 < y1 else y1
+                high = y1 if y0 < y1 else y0
+                for fine in range(within(low - PAD, n), within(high + PAD, n) + 1):
+                    span(x0, y0, x1, y1, fine, cython.address(left), cython.address(right))
+                    if right < 0.0 or left > n:
+                        continue
+                    c0 = self.crowded[column] + fine * n
+                    for k in range(self.fine_start[c0 + within(left, n)], self.fine_start[c0 + within(right, n) + 1]):
+                        if self.meets(self.fine_edge[k], px, py, qx, qy, u, v):
+                            return True
+        return False
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def meets(
+        self,
+        e: cython.int,
+        px: cython.double,
+        py: cython.double,
+        qx: cython.double,
+        qy: cython.double,
+        u: cython.int,
+        v: cython.int,
+    ) -> cython.bint:
+        """Whether one edge obstructs the segment from p to q; see `obstructed`."""
+        a: cython.int = self.ea[e]
+        b: cython.int = self.eb[e]
+        ax: cython.double = self.vx[a]
+        ay: cython.double = self.vy[a]
+        bx: cython.double = self.vx[b]
+        by: cython.double = self.vy[b]
+        s: cython.int
+        t: cython.int
+        if v < 0:  # two queries
+            return side_of_vertex(px, py, qx, qy, ax, ay) != side_of_vertex(px, py, qx, qy, bx, by) and side_of_query(
+                ax, ay, bx, by, px, py
+            ) != side_of_query(ax, ay, bx, by, qx, qy)
+        if u < 0:  # a query and a vertex
+            if a == v or b == v:
+                return False
+            if side_of_query(qx, qy, ax, ay, px, py) == side_of_query(qx, qy, bx, by, px, py):
+                return False
+            s = orient(ax, ay, bx, by, qx, qy)
+            return s != 0 and s != side_of_query(ax, ay, bx, by, px, py)
+        s = 0 if a == u or a == v else orient(px, py, qx, qy, ax, ay)
+        t = 0 if b == u or b == v else orient(px, py, qx, qy, bx, by)
+        if (s == 0 and between(px, py, qx, qy, ax, ay)) or (t == 0 and between(px, py, qx, qy, bx, by)):
+            return True
+        return s * t < 0 and orient(ax, ay, bx, by, px, py) * orient(ax, ay, bx, by, qx, qy) < 0
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def bends_for(self, node: cython.int, qx: cython.double, qy: cython.double) -> cython.bint:
+        """Whether a shortest path may bend at this node and go straight to the query q: within the sector, and taut."""
+        v: cython.int = self.node_vertex[node]
+        a: cython.int = self.node_low[node]
+        b: cython.int = self.node_high[node]
+        if a == b:
+            return True
+        return side_of_query(self.vx[v], self.vy[v], self.vx[a], self.vy[a], qx, qy) == side_of_query(
+            self.vx[v], self.vy[v], self.vx[b], self.vy[b], qx, qy
+        )
+
+
+@cython.cfunc
+def doubles(array: cython.double[::1]) -> cython.p_double:
+    """Where a contiguous array keeps its numbers."""
+    return cython.address(array[0])
+
+
+@cython.cfunc
+def ints(array: cython.int[::1]) -> cython.p_int:
+    """Where a contiguous array keeps its numbers."""
+    return cython.address(array[0])
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def between(
+    ux: cython.double, uy: cython.double, vx: cython.double, vy: cython.double, ax: cython.double, ay: cython.double
+) -> cython.bint:
+    """Whether a, known to be on the line of u and v, lies strictly between them."""
+    if ux != vx:
+        return (ux < ax) != (vx < ax) and ax != ux and ax != vx
+    return (uy < ay) != (vy < ay) and ay != uy and ay != vy
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def within(x: cython.double, n: cython.int) -> cython.int:
+    """The cell of a fine grid that holds a coordinate, in range."""
+    return 0 if x < 0.0 else (n - 1 if x >= n else cython.cast(cython.int, x))
+
+
+def visible(
+    scene: Scene,
+    p: cython.double[:, ::1],
+    q: cython.double[:, ::1],
+    begin: cython.Py_ssize_t,
+    end: cython.Py_ssize_t,
+    out: cython.bint[::1],
+) -> None:
+    """Which of the pairs begin … end see each other."""
+    k: cython.Py_ssize_t
+    with cython.nogil:
+        for k in range(begin, end):
+            out[k] = scene.n_edges == 0 or scene.sees(p[k, 0], p[k, 1], q[k, 0], q[k, 1])

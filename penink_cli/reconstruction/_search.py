@@ -1,0 +1,373 @@
+# cython: language_level=3, boundscheck=False, wraparound=False, cdivision=True
+"""Shortest unobstructed paths by a bounded Dijkstra over the path graph, and equation 4 at single points."""
+
+import cython
+from cython.cimports.libc.math import fabs, sqrt
+from cython.cimports.libc.stdlib import free, malloc, realloc
+from cython.cimports.penink_cli.reconstruction._scene import BLOCK, Scene
+
+COMPILED = cython.compiled
+
+INFINITY = cython.declare(cython.double, float("inf"))
+SLACK = cython.declare(cython.double, 1e-9)  # more than rounding comes to in lengths of a few samples
+MANY = cython.declare(cython.int, 64)  # samples in a block from which on bends are not remembered for each of them
+
+
+@cython.final  # calls are direct, and inlined
+@cython.cclass
+class Finder:
+    """Shortest paths in one scene for one thread, with the bends next to each sample remembered.
+
+    row0, row1: the rows of samples to remember bends for. closed: remember for each sample every node that can be the
+    last bend on a path of length `reach` from it, else only those it sees.
+    """
+
+    def __init__(self, scene: Scene, row0: cython.int, row1: cython.int, reach: cython.double, closed: cython.bint):
+        self.scene = scene
+        self.row0 = row0
+        self.row1 = row1
+        self.reach = reach
+        self.closed = closed
+        self.radius = reach - 2.0 * sqrt(2.0)
+        n: cython.Py_ssize_t = cython.cast(cython.Py_ssize_t, row1 - row0) * scene.width
+        k: cython.Py_ssize_t
+        self.start = cython.cast(cython.p_int, malloc(max(1, n) * cython.sizeof(cython.int)))
+        self.count = cython.cast(cython.p_int, malloc(max(1, n) * cython.sizeof(cython.int)))
+        self.distance = cython.cast(cython.p_double, malloc(max(1, scene.n_nodes) * cython.sizeof(cython.double)))
+        self.stamp = cython.cast(cython.p_int, malloc(max(1, scene.n_nodes) * cython.sizeof(cython.int)))
+        self.done = cython.cast(cython.p_int, malloc(max(1, scene.n_nodes) * cython.sizeof(cython.int)))
+        for k in range(n):
+            self.count[k] = -1
+        for k in range(scene.n_nodes):
+            self.stamp[k] = -1
+        self.pool_size = 1024
+        self.pool_node = cython.cast(cython.p_int, malloc(self.pool_size * cython.sizeof(cython.int)))
+        self.pool_length = cython.cast(cython.p_double, malloc(self.pool_size * cython.sizeof(cython.double)))
+        self.heap_size = 256
+        self.heap_node = cython.cast(cython.p_int, malloc(self.heap_size * cython.sizeof(cython.int)))
+        self.heap_key = cython.cast(cython.p_double, malloc(self.heap_size * cython.sizeof(cython.double)))
+        self.alpha_size = 64
+        self.alpha = cython.cast(cython.p_double, malloc(self.alpha_size * cython.sizeof(cython.double)))
+
+    def __dealloc__(self):
+        free(self.start)
+        free(self.count)
+        free(self.distance)
+        free(self.stamp)
+        free(self.done)
+        free(self.pool_node)
+        free(self.pool_length)
+        free(self.heap_node)
+        free(self.heap_key)
+        free(self.alpha)
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def push(self, node: cython.int, key: cython.double) -> cython.void:
+        """Note a path of that length to a node, if none as short is known."""
+        i: cython.int
+        up: cython.int
+        if self.stamp[node] == self.now and self.distance[node] <= key:
+            return
+        self.stamp[node] = self.now
+        self.distance[node] = key
+        if self.heap_used == self.heap_size:
+            self.heap_size *= 2
+            self.heap_node = cython.cast(
+                cython.p_int, realloc(self.heap_node, self.heap_size * cython.sizeof(cython.int))
+            )
+            self.heap_key = cython.cast(
+                cython.p_double, realloc(self.heap_key, self.heap_size * cython.sizeof(cython.double))
+            )
+        i = self.heap_used
+        self.heap_used += 1
+        while i > 0:
+            up = (i - 1) >> 1
+            if self.heap_key[up] <= key:
+                break
+            self.heap_key[i] = self.heap_key[up]
+            self.heap_node[i] = self.heap_node[up]
+            i = up
+        self.heap_key[i] = key
+        self.heap_node[i] = node
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def worth(self, x: cython.double, y: cython.double, length: cython.double) -> cython.bint:
+        """Whether a path of that length from a sample to a bend, x and y away, can go on to a pixel of the sample's.
+
+        A pixel p has a sample s among its 16 where it lies in the square of half side 2 around s, and the path matters
+        where length + |p − v| < |p − s| + r. So length − r must be less than the most that |p − s| − |p − v| comes to
+        in that square: within it at v itself; else, where v is beyond one side, at the point of that side that the
+        mirror image of v is seen through, where the mirror image is; and at the corner where that is off the side.
+        A node left out is no stage to another: |p − s| − |p − v| falls by no more than the way from node to node.
+        It leaves out a third of all bends that the bound by distance alone lets in.
+        """
+        most: cython.double
+        x = fabs(x)
+        y = fabs(y)
+        if x <= 2.0 and y <= 2.0:
+            most = sqrt(x * x + y * y)
+        elif y <= 4.0 - x and x > 2.0:
+            most = sqrt((4.0 - x) * (4.0 - x) + y * y)
+        elif x <= 4.0 - y and y > 2.0:
+            most = sqrt((4.0 - y) * (4.0 - y) + x * x)
+        else:
+            most = 2.0 * sqrt(2.0) - sqrt((x - 2.0) * (x - 2.0) + (y - 2.0) * (y - 2.0))
+        return length < most + self.radius + SLACK
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def first_bends(self, qx: cython.double, qy: cython.double, reach: cython.double) -> cython.void:
+        """Start a search: note the nodes that the query q sees, within reach."""
+        row: cython.int
+        k: cython.int
+        n: cython.int
+        x: cython.double
+        y: cython.double
+        d: cython.double
+        # A node worth its while is at most so far away along an axis: |v| + |v − corner| ≥ |corner mirrored at v's x|.
+        window: cython.double = 1.0 + 0.5 * sqrt(reach * reach - 4.0) if self.closed else reach
+        across: cython.int = self.scene.node_across
+        c0: cython.int = self.scene.column_of(qx - window) >> BLOCK
+        c1: cython.int = (self.scene.column_of(qx + window) >> BLOCK) + 1
+        self.now += 1
+        self.heap_used = 0
+        self.from_x = qx
+        self.from_y = qy
+        for row in range(self.scene.row_of(qy - window) >> BLOCK, (self.scene.row_of(qy + window) >> BLOCK) + 1):
+            for k in range(self.scene.node_start[row * across + c0], self.scene.node_start[row * across + c1]):
+                x = self.scene.node_x[k] - qx
+                y = self.scene.node_y[k] - qy
+                if fabs(x) > window or fabs(y) > window:
+                    continue
+                d = sqrt(x * x + y * y)
+                if d >= reach or (self.closed and not self.worth(x, y, d)):
+                    continue
+                n = self.scene.node_sorted[k]
+                if self.scene.bends_for(n, qx, qy) and self.scene.sees_vertex(qx, qy, self.scene.node_vertex[n]):
+                    self.push(n, d)
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def spread(self, reach: cython.double) -> cython.void:
+        """Dijkstra from the noted nodes as far as `reach`; `done` lists the nodes reached, nearest first."""
+        n: cython.int
+        node: cython.int
+        i: cython.int
+        down: cython.int
+        k: cython.int
+        key: cython.double
+        last: cython.double
+        self.n_done = 0
+        while self.heap_used > 0:
+            node = self.heap_node[0]
+            key = self.heap_key[0]
+            self.heap_used -= 1
+            n = self.heap_used
+            last = self.heap_key[n]
+            i = 0
+            while True:
+                down = 2 * i + 1
+                if down >= n:
+                    break
+                if down + 1 < n and self.heap_key[down + 1] < self.heap_key[down]:
+                    down += 1
+                if self.heap_key[down] >= last:
+                    break
+                self.heap_key[i] = self.heap_key[down]
+                self.heap_node[i] = self.heap_node[down]
+                i = down
+            self.heap_key[i] = last
+            self.heap_node[i] = self.heap_node[n]
+            if key > self.distance[node]:
+                continue  # a shorter way was found meanwhile
+            self.done[self.n_done] = node
+            self.n_done += 1
+            for k in range(self.scene.arc_start[node], self.scene.arc_start[node + 1]):
+                last = key + self.scene.arc_length[k]
+                if last >= reach:
+                    continue
+                n = self.scene.arc_to[k]
+                i = self.scene.node_vertex[n]
+                if not self.closed or self.worth(self.scene.vx[i] - self.from_x, self.scene.vy[i] - self.from_y, last):
+                    self.push(n, last)
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def bends_of(self, i: cython.int, j: cython.int) -> cython.int:
+        """Where the pool keeps the bends of sample (row i, column j), nearest first; `count` says how many."""
+        k: cython.int
+        s: cython.Py_ssize_t = cython.cast(cython.Py_ssize_t, i - self.row0) * self.scene.width + j
+        if self.count[s] >= 0:
+            return self.start[s]
+        self.first_bends(j, i, self.reach)
+        if self.closed:
+            self.spread(self.reach)
+        else:  # the heap itself is the answer
+            self.n_done = 0
+            for k in range(self.heap_used):
+                self.done[self.n_done] = self.heap_node[k]
+                self.n_done += 1
+        while self.pool_used + self.n_done > self.pool_size:
+            self.pool_size *= 2
+            self.pool_node = cython.cast(
+                cython.p_int, realloc(self.pool_node, self.pool_size * cython.sizeof(cython.int))
+            )
+            self.pool_length = cython.cast(
+                cython.p_double, realloc(self.pool_length, self.pool_size * cython.sizeof(cython.double))
+            )
+        self.start[s] = cython.cast(cython.int, self.pool_used)
+        self.count[s] = self.n_done
+        for k in range(self.n_done):
+            self.pool_node[self.pool_used] = self.done[k]
+            self.pool_length[self.pool_used] = self.distance[self.done[k]]
+            self.pool_used += 1
+        return self.start[s]
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def attenuate(
+        self,
+        px: cython.double,
+        py: cython.double,
+        i0: cython.int,
+        i1: cython.int,
+        j0: cython.int,
+        j1: cython.int,
+        r: cython.double,
+    ) -> cython.bint:
+        """Equation 4 for the query p and the block of samples of rows i0 … i1, columns j0 … j1, into `alpha`.
+
+        False, and nothing filled, where no edge is between: all are one. This finder must remember seen nodes only.
+        """
+        i: cython.int
+        j: cython.int
+        k: cython.int = 0
+        n: cython.int = (i1 - i0 + 1) * (j1 - j0 + 1)
+        remember: cython.bint = n <= MANY
+        s: cython.Py_ssize_t
+        m: cython.int
+        at: cython.int
+        node: cython.int
+        t: cython.double
+        d: cython.double
+        best: cython.double
+        farthest: cython.double = 0.0
+        if self.scene.clear(px if px < j0 else j0, py if py < i0 else i0, px if px > j1 else j1, py if py > i1 else i1):
+            return False
+        if n > self.alpha_size:
+            self.alpha_size = n
+            self.alpha = cython.cast(cython.p_double, realloc(self.alpha, n * cython.sizeof(cython.double)))
+        for i in range(i0, i1 + 1):
+            for j in range(j0, j1 + 1):
+                if self.scene.sees(px, py, j, i):
+                    self.alpha[k] = 1.0
+                else:
+                    self.alpha[k] = -1.0
+                    d = (px - j) * (px - j) + (py - i) * (py - i)
+                    if d > farthest:
+                        farthest = d
+                k += 1
+        if farthest <= 0.0:
+            return True
+        # A block of many samples is one of few pixels: then finding all bends next to each sample first is dear.
+        if remember:  # first of all: finding them uses the same marks as the search from p
+            k = 0
+            for i in range(i0, i1 + 1):
+                for j in range(j0, j1 + 1):
+                    if self.alpha[k] < 0.0:
+                        self.bends_of(i, j)
+                    k += 1
+        farthest = sqrt(farthest) + r
+        self.first_bends(px, py, farthest)
+        self.spread(farthest)
+        k = 0
+        for i in range(i0, i1 + 1):
+            for j in range(j0, j1 + 1):
+                if self.alpha[k] < 0.0:
+                    d = sqrt((px - j) * (px - j) + (py - i) * (py - i))
+                    best = INFINITY
+                    if remember:
+                        at = self.bends_of(i, j)
+                        s = cython.cast(cython.Py_ssize_t, i - self.row0) * self.scene.width + j
+                        for m in range(at, at + self.count[s]):
+                            node = self.pool_node[m]
+                            if self.stamp[node] == self.now and self.distance[node] + self.pool_length[m] < best:
+                                best = self.distance[node] + self.pool_length[m]
+                    else:
+                        best = self.last_leg(j, i, d + r)
+                    t = (best - d) / r
+                    if t >= 1.0:
+                        self.alpha[k] = 0.0
+                    elif t <= 0.0:
+                        self.alpha[k] = 1.0
+                    else:
+                        self.alpha[k] = 1.0 - t * t * (3.0 - 2.0 * t)
+                k += 1
+        return True
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def last_leg(self, qx: cython.double, qy: cython.double, limit: cython.double) -> cython.double:
+        """Length of the shortest path below the limit from where `spread` began, round a bend, to the query q."""
+        k: cython.int
+        n: cython.int
+        v: cython.int
+        x: cython.double
+        y: cython.double
+        left: cython.double
+        best: cython.double = INFINITY
+        for k in range(self.n_done):
+            n = self.done[k]
+            left = limit - self.distance[n]
+            if left <= 0.0:
+                break
+            v = self.scene.node_vertex[n]
+            x = self.scene.vx[v] - qx
+            y = self.scene.vy[v] - qy
+            if x * x + y * y >= left * left:
+                continue
+            if self.scene.bends_for(n, qx, qy) and self.scene.sees_vertex(qx, qy, v):
+                best = self.distance[n] + sqrt(x * x + y * y)
+                limit = best
+        return best
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def length(
+        self, px: cython.double, py: cython.double, qx: cython.double, qy: cython.double, limit: cython.double
+    ) -> cython.double:
+        """Length of the shortest unobstructed path between two queries, infinite beyond the limit."""
+        d: cython.double = sqrt((px - qx) * (px - qx) + (py - qy) * (py - qy))
+        if d > limit:
+            return INFINITY
+        if self.scene.n_edges == 0 or self.scene.sees(px, py, qx, qy):
+            return d
+        self.first_bends(px, py, limit)
+        self.spread(limit)
+        return self.last_leg(qx, qy, limit)
+
+
+def path_lengths(
+    finder: Finder,
+    p: cython.double[:, ::1],
+    q: cython.double[:, ::1],
+    limit: cython.double,
+    begin: cython.Py_ssize_t,
+    end: cython.Py_ssize_t,
+    out: cython.double[::1],
+) -> None:
+    """Shortest path lengths for the pairs begin … end, infinite beyond the limit."""
+    k: cython.Py_ssize_t
+    with cython.nogil:
+        for k in range(begin, end):
+            out[k] = finder.length(p[k, 0], p[k, 1], q[k, 0], q[k, 1], limit)
