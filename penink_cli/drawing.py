@@ -10,10 +10,9 @@ import numpy as np
 
 from penink_cli.errors import ParameterError
 from penink_cli.formats import strokes as strokes_format
-from penink_cli.model import EdgeList, Floats, GreyImage, Illustration, Layer, OutlineChoice, Strokes, Texture
+from penink_cli.model import EdgeList, Floats, GreyImage, OutlineChoice, Strokes, Texture
 
 PIXELS_PER_PT = 2.0  # of the grey that is blasted: half the distance between the closest strokes
-LEAST_TONE = 1 / 255  # below it an overlay is paper
 
 Advance = Callable[[int], None]
 
@@ -61,9 +60,7 @@ def represented(
         size = "--auto"
     except ParameterError:  # no grid comes that near to a photo of noise or fine texture: half of it is enough to hatch
         rows, columns = ((side + 1) // 2 for side in photo.values.shape)
-        reduced = reduction.reduce(
-            samples.grey, edges, columns, rows, photo=photo.grey, fit="lsq", threads=threads
-        )
+        reduced = reduction.reduce(samples.grey, edges, columns, rows, photo=photo.grey, fit="lsq", threads=threads)
         size = f"--size {columns}x{rows}"
     advance(1)
     return edges, GreyImage.from_grey(reduced, 255), size
@@ -121,68 +118,3 @@ def joined(parts: Sequence[Strokes]) -> Strokes:
     np.cumsum(counts, out=first[1:])
     points = np.concatenate([part.points for part in parts])
     return Strokes(parts[0].width, parts[0].height, points, first, np.concatenate([part.widths for part in parts]))
-
-
-def layer_strokes(
-    illustration: Illustration,
-    width_pt: float,
-    *,
-    device_dpi: float | None = 600.0,
-    seed: int = 0,
-    threads: int | None = None,
-    advance: Advance = lambda done: None,
-) -> list[tuple[Strokes, Strokes]]:
-    """Hatching and outline strokes of each layer, bottom first, for a picture width_pt wide.
-
-    Outlines are ink first, those of all layers; then each layer is hatched up to the sum of its tone and of the layers
-    below, with their ink counted, wherever it has tone itself: so tones add up and no ink is there twice. A layer with
-    the threshold rule is hatched as an illustration that draws itself is on a device, whatever the others are.
-    """
-    from penink_cli.blasting.blast import blast
-
-    height_pt = width_pt * illustration.height / illustration.width
-    size = grey_size(width_pt, illustration.height / illustration.width)
-    outlines: list[Strokes] = []
-    for layer in illustration.layers:
-        drawn = Strokes(width_pt, height_pt)
-        if layer.outline is not None and layer.edges is not None:
-            before = joined(outlines) if outlines else None
-            drawn = outlined(layer.edges, width_pt, height_pt, layer.outline, before)
-        outlines.append(drawn)
-    ink = joined(outlines)
-    total: Floats | None = None
-    result = []
-    for i, layer in enumerate(illustration.layers):
-        tone = tone_curve(enlarged(layer.samples, layer.edges, size, threads), layer.gamma)
-        total = tone if total is None else np.minimum(1.0, total + tone)
-        wanted = total if i == 0 else np.where(tone >= LEAST_TONE, total, 0.0)
-        if layer.rule == "threshold":
-            hatched = _hatched_as_by_a_device(layer, width_pt, height_pt, device_dpi, outlines[i], threads)
-        else:
-            hatched = blast(
-                wanted, width_pt, height_pt, layer.edges, layer.texture, seed=seed + layer.seed + i,
-                pen_pt=layer.pen_pt, device_dpi=device_dpi, rule=layer.rule, outlines=ink if len(ink) else None,
-                threads=threads,
-            )  # fmt: skip
-        hatched = as_written(hatched)
-        ink = joined([ink, hatched])
-        result.append((hatched, outlines[i]))
-        advance(1)
-    return result
-
-
-def _hatched_as_by_a_device(
-    layer: Layer, width_pt: float, height_pt: float, device_dpi: float | None, ink: Strokes, threads: int | None
-) -> Strokes:
-    """Hatching from the samples and edges as a device is sent them, on the grid that it fills."""
-    from penink_cli.blasting import threshold
-    from penink_cli.reconstruction.enlarge import enlarge
-    from penink_cli.selfdrawing.data import as_sent
-
-    samples, edges = as_sent(layer)
-    h, w = samples.values.shape
-    n, m = threshold.grid(layer.texture, layer.pen_pt, device_dpi, width_pt, height_pt)
-    tone = tone_curve(enlarge(samples, edges, max(n, w), max(m, h), threads=threads), layer.gamma)
-    return threshold.blast_by_threshold(
-        tone, width_pt, height_pt, edges, layer.texture, layer.pen_pt, device_dpi, ink if len(ink) else None
-    )

@@ -118,7 +118,7 @@ def keys(s: Studio) -> None:
     s.penink("separate", "keys.png", "--mask", "keys-mask.png", "--invert", "-o", "shadow-only.pgm")
     s.represent("keys-only.pgm", "metal", 128, "--high", 0.12, "--min-length", 10)
     s.represent("shadow-only.pgm", "shadow", 64, "--high", 0.16, "--min-length", 20)
-    outline = {"pen": 0.8, "min_strength": 0.2, "min_length": 30}
+    outline = {"pen": 0.6, "min_strength": 0.2, "min_length": 30}
     s.illustrate(
         "keys", 4.6, [{"of": "shadow", "name": "shadow", "texture": "stipple"},
                       {"of": "metal", "name": "keys", "texture": "crosshatch", "outline": outline}],

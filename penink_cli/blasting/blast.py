@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from penink_cli.blasting import hatching, tile
-from penink_cli.blasting.sheet import Sheet
+from penink_cli.blasting.sheet import Sheet, resample
 from penink_cli.blasting.threshold import blast_by_threshold
 from penink_cli.errors import ParameterError
 from penink_cli.model import EdgeList, Floats, Strokes, Texture
@@ -69,6 +69,15 @@ def blast(
             strokes = hatching.press(sheet, strokes, seed)
     tick()
     return replace(strokes, texture=texture.name, seed=seed)
+
+
+def left_over(
+    tone: Floats, width_pt: float, height_pt: float, strokes: Strokes, device_dpi: float | None, threads: int | None
+) -> Floats:
+    """Tone (h, w) less the ink of the strokes on such a sheet, as the eye sees both: positive is too light."""
+    sheet = Sheet(tone, width_pt, height_pt, 72.0 / device_dpi if device_dpi else 0.0, threads or 1)
+    hatching.draw_first(sheet, strokes)
+    return resample(sheet.spread(sheet.error()).astype(np.float64), *tone.shape)
 
 
 def batches(strokes: Strokes, size: int = 4096) -> Iterator[Strokes]:

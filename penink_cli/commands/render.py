@@ -55,8 +55,9 @@ def render(
     \b
     penink render keys.penink --width 24in --device-dpi 1200 | penink to-ps -o poster.eps
     """
-    from penink_cli.drawing import joined, layer_strokes
+    from penink_cli.drawing import joined
     from penink_cli.formats import strokes
+    from penink_cli.layering import layer_strokes, steps
     from penink_cli.progress import progress
 
     if width is not None and scale is not None:
@@ -66,7 +67,7 @@ def render(
     height_pt = width_pt * illustration.height / illustration.width
     check_sheet(width_pt, height_pt)
     which = range(len(illustration.layers)) if chosen is None else [_number(illustration, chosen)]
-    with progress(len(illustration.layers), "render", quiet) as advance:
+    with progress(steps(illustration), "render", quiet) as advance:
         layers = layer_strokes(
             illustration, width_pt, device_dpi=device_dpi, seed=seed, threads=threads or processors(), advance=advance
         )

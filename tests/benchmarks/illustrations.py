@@ -17,9 +17,10 @@ from PIL import Image
 from penink_cli.arrangement import detection
 from penink_cli.blasting.blast import blast
 from penink_cli.commands.inputs import read_illustration, settled
-from penink_cli.drawing import enlarged, joined, layer_strokes
+from penink_cli.drawing import enlarged, joined
 from penink_cli.formats import archive, edge_list, illustration, postscript
 from penink_cli.formats.page import lay_out
+from penink_cli.layering import layer_strokes
 from penink_cli.model import EdgeList, GreyImage, Illustration, Layer
 from penink_cli.reconstruction import extraction, reduction
 from penink_cli.reconstruction.enlarge import bands
@@ -122,14 +123,18 @@ def tone(folder: Path) -> None:
     whole = read_illustration(str(folder / "keys.penink"), 10**8)
     photo = GreyImage(np.asarray(Image.open(folder / "keys.png").convert("L")), 255)
     print(f"keys and shadow, {(folder / 'keys.penink').stat().st_size / 1000:.1f} KB, printed at 600 dpi")
-    print("| inches | tone RMS % | bias % | worst % | hatching stroke, pt (median) | strokes |")
+    print("| inches | tone RMS % | bias % | worst % | width of hatching, pt: 10, 50, 90 % of it | strokes |")
     print("| --- | --- | --- | --- | --- | --- |")
     for inches in (1, 4, 24):
         parts = layer_strokes(whole, 72.0 * inches, threads=2)
         strokes = joined([part for layer in parts for part in layer])
         rms, bias, worst = measures.tone_figures(strokes, photo.tone)
-        width = np.median(parts[-1][0].widths)
-        print(f"| {inches} | {rms:.2f} | {bias:+.2f} | {worst:.1f} | {width:.2f} | {len(strokes)} |", flush=True)
+        low, middle, high = np.quantile(parts[-1][0].widths, (0.1, 0.5, 0.9))
+        print(
+            f"| {inches} | {rms:.2f} | {bias:+.2f} | {worst:.1f} | {low:.2f}, {middle:.2f}, {high:.2f} "
+            f"| {len(strokes)} |",
+            flush=True,
+        )
 
 
 # ------------------------------------------------------------------- Table 1

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from penink_cli.drawing import layer_strokes
+from penink_cli.layering import layer_strokes
 from penink_cli.model import Illustration
 from penink_cli.selfdrawing import html, postscript
 from penink_cli.texture_options import find_texture

@@ -1,0 +1,51 @@
+"""Layers drawn together: their tones add up to the picture's, along their common borders too."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from penink_cli import layering
+from penink_cli.drawing import joined
+from penink_cli.model import EdgeList, GreyImage, Illustration, Layer, OutlineChoice
+from penink_cli.texture_options import find_texture
+from tests.blasting import measures
+
+
+def two_layers(side: int = 48) -> tuple[Illustration, np.ndarray]:
+    """A dark ring, cross-hatched and outlined, on a stippled ground that its shadow darkens; and the tone (h, w) of both."""
+    y, x = (np.mgrid[0:side, 0:side] + 0.5) / side
+    within = np.abs(np.hypot(x - 0.45, y - 0.45) - 0.22) < 0.03
+    tone = np.where(within, 0.55, 0.06 + 0.3 * np.exp(-(np.hypot(x - 0.6, y - 0.6) ** 2) / 0.04))
+    turn = np.arange(48) * np.pi / 24
+    around = np.column_stack([np.cos(turn), np.sin(turn)])
+    ends = np.column_stack([np.arange(48), (np.arange(48) + 1) % 48])
+    circles = EdgeList(
+        side, side, side * (0.45 + np.concatenate([0.25 * around, 0.19 * around])), np.concatenate([ends, ends + 48])
+    )
+    layers = tuple(
+        Layer(GreyImage.from_grey(1 - np.where(part, tone, 0.0), 255), circles, find_texture(texture), outline=outline)
+        for part, texture, outline in ((~within, "stipple", None), (within, "crosshatch", OutlineChoice(0.7)))
+    )
+    return Illustration(144, 144, layers), tone
+
+
+def left_over(illustration: Illustration, tone: np.ndarray) -> float:
+    strokes = joined([part for layer in layering.layer_strokes(illustration, 144.0) for part in layer])
+    return measures.tone_figures(strokes, tone)[0]
+
+
+def test_what_is_left_over_along_a_common_border_is_fed_back(monkeypatch):
+    illustration, tone = two_layers()
+    together = left_over(illustration, tone)
+    monkeypatch.setattr(layering, "ROUNDS", 1)
+    assert together < 1.0
+    assert together < 0.9 * left_over(illustration, tone)
+
+
+def test_it_advances_as_often_as_it_says():
+    illustration, _ = two_layers(24)
+    for layers in (illustration.layers, illustration.layers[:1]):
+        some = Illustration(36, 36, layers)
+        steps: list[int] = []
+        layering.layer_strokes(some, 36.0, advance=steps.append)
+        assert sum(steps) == layering.steps(some)
