@@ -12,6 +12,9 @@ import numpy as np
 
 from penink_cli.model import Floats, Ints
 
+#: Samples that are evaluated at a time.
+CHUNK = 16384
+
 
 def ramp(counts: Ints) -> Ints:
     """0 … counts[0]-1, 0 … counts[1]-1, … as one array.
@@ -86,7 +89,11 @@ def sample(points: Floats, first: Ints, pieces: Ints) -> Polylines:
     if len(owner) == 0:
         return Polylines(points[first[:-1]], np.arange(len(k) + 1))
     seg = np.repeat(np.arange(len(pieces)), pieces)
-    inner = evaluate(control[seg], ramp(pieces) / pieces[seg])
+    t = ramp(pieces) / pieces[seg]
+    inner = np.empty((len(seg), 2))
+    # so many at a time: the cubics of all samples together are a hundred bytes a sample, and no cache holds them
+    for i in range(0, len(seg), CHUNK):
+        inner[i : i + CHUNK] = evaluate(control[seg[i : i + CHUNK]], t[i : i + CHUNK])
     per_curve = np.bincount(owner, weights=pieces, minlength=len(k)).astype(np.int64) + 1
     begin = starts(per_curve)
     out = np.empty((begin[-1], 2))

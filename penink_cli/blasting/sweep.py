@@ -87,20 +87,14 @@ def hatch(sheet: Sheet, coverage: Floats, layer: HatchLayer, pen_pt: float, gain
     rows = int((v_range.max() + PAD_PT - v0) / ROW_PT) + 2
     width = painted_width(layer.angle, pen_pt, gain_pt)
     phase = np.zeros((columns, rows))
-    u = u0 + (np.arange(columns) + 0.5) * COLUMN_PT
     v = v0 + (np.arange(rows - 1) + 0.5) * ROW_PT
     wander = wandering(layer, seed)
-    pushed = v[None, :] + wander(u[:, None], v[None, :])
-    cells = np.array([sheet.columns / sheet.width, sheet.rows / sheet.height])
-    x, y = u[:, None] * c - pushed * s, u[:, None] * s + pushed * c
-    column = np.clip((x * cells[0]).astype(np.int64), 0, sheet.columns - 1)
-    row = np.clip((y * cells[1]).astype(np.int64), 0, sheet.rows - 1)
-    near = np.abs(x - sheet.width / 2) < sheet.width / 2 + PAD_PT
-    near &= np.abs(y - sheet.height / 2) < sheet.height / 2 + PAD_PT
-    density = np.where(near, coverage[row, column] / width, 0.0)
-    if layer.spacing_pt > 0:
-        density = np.minimum(density, 1.0 / layer.spacing_pt)
-    np.cumsum(density * ROW_PT, axis=1, out=phase[:, 1:])
+    for some in range(0, columns, 64):
+        u = u0 + (np.arange(some, min(some + 64, columns)) + 0.5) * COLUMN_PT
+        density = density_at(sheet, coverage, (c, s), u[:, None], v[None, :] + wander(u[:, None], v[None, :])) / width
+        if layer.spacing_pt > 0:
+            density = np.minimum(density, 1.0 / layer.spacing_pt)
+        np.cumsum(density * ROW_PT, axis=1, out=phase[some : some + 64, 1:])
 
     rng = np.random.default_rng([seed, 2])
     key = int(rng.integers(1 << 62))
@@ -162,6 +156,17 @@ def hatch(sheet: Sheet, coverage: Floats, layer: HatchLayer, pen_pt: float, gain
     points[at[inner] + 1] = knots[inner] + tangent[inner]
     points[at[k > 0] - 1] = knots[k > 0] - tangent[k > 0]
     return Hatch(points, first, joined, slack / (end - start)[:, None], spacing)
+
+
+def density_at(sheet: Sheet, coverage: Floats, along: tuple[float, float], u: Floats, v: Floats) -> Floats:
+    """Coverage at (u, v); near the sheet that of its border, further off none."""
+    c, s = along
+    x, y = u * c - v * s, u * s + v * c
+    column = np.clip((x * (sheet.columns / sheet.width)).astype(np.int64), 0, sheet.columns - 1)
+    row = np.clip((y * (sheet.rows / sheet.height)).astype(np.int64), 0, sheet.rows - 1)
+    near = np.abs(x - sheet.width / 2) < sheet.width / 2 + PAD_PT
+    near &= np.abs(y - sheet.height / 2) < sheet.height / 2 + PAD_PT
+    return np.where(near, coverage[row, column], 0.0)
 
 
 def wandering(layer: HatchLayer, seed: int) -> Callable[[Floats, Floats], Floats]:

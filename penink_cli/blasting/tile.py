@@ -19,7 +19,7 @@ ROUNDS = 4
 MOVES = (-0.5, 0.5, 0.0)
 STEP_PT = 1.5
 #: Copies of strokes that are laid out at a time: memory stays bounded on any sheet.
-CHUNK = 25_000
+CHUNK = 12_000
 #: A stroke is not tried where the tone is lighter by this than where it enters.
 SLACK = 0.15
 

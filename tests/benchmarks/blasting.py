@@ -1,17 +1,18 @@
 """What blasting is judged by: tone, evenness, crispness, speed. ``python -m tests.benchmarks.blasting [TABLE]...``
 
-Tables: tone devices pens evenness disc speed. Each needs Ghostscript but speed.
+Tables: tone strict textures devices pens evenness disc speed threads poster, each within two minutes or so. All need
+Ghostscript but the last three.
 """
 
 from __future__ import annotations
 
-import resource
 import subprocess
 import sys
 import time
 
 import numpy as np
 
+from penink_cli.blasting import hatching
 from penink_cli.blasting.blast import blast
 from penink_cli.model import EdgeList, Floats
 from penink_cli.texture_options import find_texture
@@ -37,13 +38,8 @@ def draw(name: str, inches: float, texture: str = "crosshatch", **options):
     return tone, strokes, time.process_time() - start
 
 
-def tone() -> None:
+def tone_table(rows: list[tuple[str, float, str, str]]) -> None:
     print("tone at 600 dpi, %:        inches  texture      rule      RMS   bias  worst   long  strokes  CPU s")
-    photos = ("ramp", "camera", "moon", "coins", "chelsea", "rocket")
-    rows = [(n, w, "crosshatch", "best") for n in photos for w in (2, 4, 8)]
-    rows += [(n, 4, "crosshatch", "strict") for n in photos[:4]]
-    textures = ("parallel", "grain", "crosshatch4", "stipple", "scribble", "grass", "brick")
-    rows += [(n, 4, t, "best") for t in textures for n in photos[:4]]
     for name, inches, texture, rule in rows:
         wanted, strokes, seconds = draw(name, inches, texture, rule=rule)
         rms, bias, worst = measures.tone_figures(strokes, wanted)
@@ -52,6 +48,22 @@ def tone() -> None:
             f"  {measures.long_share(strokes):5.2f}  {len(strokes):7}  {seconds:5.2f}",
             flush=True,
         )
+
+
+PHOTOS = ("ramp", "camera", "moon", "coins", "chelsea", "rocket")
+
+
+def tone() -> None:
+    tone_table([(n, w, "crosshatch", "best") for n in PHOTOS for w in (2, 4, 8)])
+
+
+def strict() -> None:
+    tone_table([(n, 4, "crosshatch", rule) for n in PHOTOS[:4] for rule in ("best", "strict")])
+
+
+def textures() -> None:
+    names = ("parallel", "grain", "crosshatch4", "stipple", "scribble", "grass", "brick")
+    tone_table([(n, 4, t, "best") for t in names for n in PHOTOS[:4]])
 
 
 def devices() -> None:
@@ -77,6 +89,8 @@ def pens() -> None:
 
 
 def even() -> None:
+    """Without fine strokes, which lie between the lines."""
+    hatching.FINE_LEAST = np.inf
     print("evenness, flat, 8 × 8 in:   tone  angle     cv spread doubled   long gaping aligned  over 20 pt  tone RMS")
     for texture in ("parallel", "crosshatch"):
         for level in (0.1, 0.2, 0.35, 0.55):
@@ -113,7 +127,16 @@ def disc() -> None:
 SPEED = """
 import sys, resource, time, numpy as np
 from penink_cli.blasting.blast import blast
+from penink_cli.blasting.sheet import Sheet
 from penink_cli.texture_options import find_texture
+trials = [0, 0]
+place = Sheet.place
+def counting(self, lines, widths, batches, **options):
+    found = place(self, lines, widths, batches, **options)
+    trials[0] += sum(map(len, batches)) * len(options.get("shifts", (0.0,)))
+    trials[1] += len(found[0])
+    return found
+Sheet.place = counting
 w, h, threads, rule = float(sys.argv[1]) * 72, float(sys.argv[2]) * 72, int(sys.argv[3]), sys.argv[4]
 from tests.benchmarks.blasting import picture
 tone, texture = picture("camera"), find_texture("crosshatch")
@@ -123,21 +146,34 @@ c, t = time.process_time() - c, time.perf_counter() - t
 import hashlib
 digest = hashlib.sha256(s.points.tobytes() + s.widths.tobytes()).hexdigest()[:12]
 peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
-print(f"{c:7.2f}  {t:7.2f}  {peak:7.0f}  {len(s):8}  {digest}")
+print(f"{c:7.2f}  {t:7.2f}  {peak:7.0f}  {trials[0]:8}  {trials[1]:8}  {len(s):8}  {digest}")
 """
 
 
-def speed() -> None:
-    print("speed, crosshatch:   inches  threads  rule       CPU s   wall s       MB   strokes  digest")
-    sizes = [(4, 4, 1, "best"), (8, 8, 1, "best"), (8, 8, 2, "best"), (8, 8, 8, "best"), (8, 8, 1, "strict")]
-    for w, h, threads, rule in [*sizes, (24, 36, 2, "best")]:
+def speed_table(sizes: list[tuple[float, float, int, str]]) -> None:
+    print("crosshatch:   inches  threads  rule       CPU s   wall s       MB    trials  accepted   strokes  digest")
+    for w, h, threads, rule in sizes:
         arguments = [sys.executable, "-c", SPEED, str(w), str(h), str(threads), rule]
         done = subprocess.run(arguments, capture_output=True, text=True, check=True)
-        print(f"  {w:12} × {h:<10}  {threads:5}  {rule:7}  {done.stdout.strip()}", flush=True)
-    print(f"  (this process {resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024:.0f} MB)")
+        print(f"  {w:6} × {h:<10}  {threads:5}  {rule:7}  {done.stdout.strip()}", flush=True)
 
 
-TABLES = {"tone": tone, "devices": devices, "pens": pens, "evenness": even, "disc": disc, "speed": speed}
+def speed() -> None:
+    speed_table([(w, w, 1, "best") for w in (2, 4, 8, 16)] + [(8, 8, 1, "strict")])
+
+
+def threads() -> None:
+    speed_table([(8, 8, n, "best") for n in (1, 2, 8)])
+
+
+def poster() -> None:
+    speed_table([(24, 36, 2, "best")])
+
+
+TABLES = {
+    "tone": tone, "strict": strict, "textures": textures, "devices": devices, "pens": pens, "evenness": even,
+    "disc": disc, "speed": speed, "threads": threads, "poster": poster,
+}  # fmt: skip
 
 if __name__ == "__main__":
     for table in sys.argv[1:] or TABLES:
