@@ -12,7 +12,7 @@ from tests.blasting import measures
 
 
 def two_layers(side: int = 48) -> tuple[Illustration, np.ndarray]:
-    """A dark ring, cross-hatched and outlined, on a stippled ground that its shadow darkens; and the tone (h, w) of both."""
+    """A dark ring, hatched and outlined, on a stippled ground that its shadow darkens; the tone (h, w) of both."""
     y, x = (np.mgrid[0:side, 0:side] + 0.5) / side
     within = np.abs(np.hypot(x - 0.45, y - 0.45) - 0.22) < 0.03
     tone = np.where(within, 0.55, 0.06 + 0.3 * np.exp(-(np.hypot(x - 0.6, y - 0.6) ** 2) / 0.04))
