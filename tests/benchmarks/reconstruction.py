@@ -174,7 +174,9 @@ def process():
         write_inputs(folder, 128, 500)
         ours = command(folder, "--scale", "8", "-o", folder / "out.pgm")
         theirs = [sys.executable, "-c", PILLOW_SCRIPT, str(folder / "in.pgm"), str(folder / "pillow.pgm")]
-        environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+        # Installed modules are compiled once; so must these be, whatever the environment says.
+        environment = {**os.environ, "PYTHONPATH": str(ROOT), "PYTHONPYCACHEPREFIX": str(folder / "bytecode")}
+        environment.pop("PYTHONDONTWRITEBYTECODE", None)
 
         def run(arguments):
             subprocess.run(arguments, check=True, env=environment)
