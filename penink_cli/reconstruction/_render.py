@@ -7,8 +7,8 @@ are not worth a second build: with AVX2 500 scattered edges at 128² → 1024² 
 
 import cython
 from cython.cimports.libc.math import sqrt, sqrtf
-from cython.cimports.libc.stdlib import free, malloc, realloc
 from cython.cimports.libc.string import memcpy
+from cython.cimports.penink_cli.reconstruction._desk import Desk
 from cython.cimports.penink_cli.reconstruction._tile import Tile
 
 COMPILED = cython.compiled
@@ -19,65 +19,6 @@ stored = cython.fused_type(cython.uchar, cython.ushort, cython.double)
 T1 = cython.declare(cython.double, 0.5)  # below this sum of cubic weights the B-spline is blended in
 T2 = cython.declare(cython.double, 1e-4)  # below this sum of B-spline weights plain convolution is faded in
 FAR = cython.declare(cython.float, 1e30)  # a distance no path has
-
-
-@cython.final
-@cython.cclass
-class Desk:
-    """Scratch of one thread. Arrays of 64 hold one number a pixel of the tile, row by row."""
-
-    bits: cython.p_double  # 256 × 8: a byte as eight numbers, 0 or 1 for each bit
-    bits_single: cython.p_float
-    alpha: cython.p_double  # 16 × 64: attenuation of each sample
-    alpha_single: cython.p_float
-    nodes: cython.p_double  # (size) × 64: distance from each pixel to a node, FAR where that is hidden
-    nodes_single: cython.p_float
-    node_mask: cython.p_ulonglong
-    used: cython.int
-    size: cython.int
-    shaded: cython.uchar[16]  # for each sample the set of rows of pixels of which some do not see it
-    mixed: cython.uchar[16]  # those of them where its attenuation is not zero throughout
-
-    def __init__(self):
-        k: cython.int
-        i: cython.int
-        self.size = 32
-        self.bits = cython.cast(cython.p_double, malloc(256 * 8 * cython.sizeof(cython.double)))
-        self.bits_single = cython.cast(cython.p_float, malloc(256 * 8 * cython.sizeof(cython.float)))
-        self.alpha = cython.cast(cython.p_double, malloc(16 * 64 * cython.sizeof(cython.double)))
-        self.alpha_single = cython.cast(cython.p_float, self.alpha)
-        self.nodes = cython.cast(cython.p_double, malloc(self.size * 64 * cython.sizeof(cython.double)))
-        self.nodes_single = cython.cast(cython.p_float, self.nodes)
-        self.node_mask = cython.cast(cython.p_ulonglong, malloc(self.size * cython.sizeof(cython.ulonglong)))
-        for k in range(256):
-            for i in range(8):
-                self.bits[8 * k + i] = self.bits_single[8 * k + i] = (k >> i) & 1
-
-    def __dealloc__(self):
-        free(self.bits)
-        free(self.bits_single)
-        free(self.alpha)
-        free(self.nodes)
-        free(self.node_mask)
-
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def another_node(self, seen: cython.ulonglong) -> cython.int:
-        """Room for the distances to one more node, seen from some pixels; its place."""
-        slot: cython.int = self.used
-        if slot == self.size:
-            self.size *= 2
-            self.nodes = cython.cast(
-                cython.p_double, realloc(self.nodes, self.size * 64 * cython.sizeof(cython.double))
-            )
-            self.nodes_single = cython.cast(cython.p_float, self.nodes)
-            self.node_mask = cython.cast(
-                cython.p_ulonglong, realloc(self.node_mask, self.size * cython.sizeof(cython.ulonglong))
-            )
-        self.node_mask[slot] = seen
-        self.used = slot + 1
-        return slot
 
 
 @cython.cfunc

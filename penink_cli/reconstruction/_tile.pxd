@@ -1,18 +1,14 @@
 cimport cython
 
+from penink_cli.reconstruction._pixels cimport Pixels
 from penink_cli.reconstruction._scene cimport Scene
 from penink_cli.reconstruction._search cimport Finder
 
 @cython.final
-cdef class Tile:
+cdef class Tile(Pixels):
     cdef Finder finder
     cdef Scene scene
-    cdef int nx, ny
-    cdef double* px
-    cdef double* py
-    cdef double step_x, step_y
-    cdef int cx, cy, gather_radius
-    cdef float mid_x, mid_y, half_x, half_y
+    cdef int gather_radius
     cdef float[16] sx
     cdef float[16] sy
     cdef int[4] column
@@ -49,11 +45,5 @@ cdef class Tile:
     cdef int enter_vertex(self, int v) noexcept nogil
     cdef void classify_vertex(self, int k) noexcept nogil
     cdef void classify_edge(self, int k) noexcept nogil
-    cdef unsigned long long half_plane(self, double ax, double ay, double bx, double by, bint from_sample) noexcept nogil
-    cdef int box_side(self, double ax, double ay, double bx, double by) noexcept nogil
-    cdef unsigned long long pixels(self) noexcept nogil
-    cdef unsigned long long exactly(self, double ax, double ay, double bx, double by, bint from_sample, unsigned long long m, unsigned long long unsure) noexcept nogil
     cdef unsigned long long edge_mask(self, int k) noexcept nogil
     cdef unsigned long long line_mask(self, int k, int sample) noexcept nogil
-    cdef double nearest(self, double x, double y) noexcept nogil
-    cdef double farthest(self, double x, double y) noexcept nogil

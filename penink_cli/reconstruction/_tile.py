@@ -1,43 +1,28 @@
 # cython: language_level=3, boundscheck=False, wraparound=False, cdivision=True
 """What the output pixels of one tile see: up to 8 × 8 of them, in one cell, which share the same 4 × 4 samples.
 
-A set of pixels is a word of 64 bits, pixel (row r, column c) at bit 8 r + c; a set of samples a word of 16 bits,
-in reading order. Which pixels lie on one side of a line is a *mask*. Nearly every line leaves the whole tile on
-one side, which four multiplications settle, with slack; only where it does not are the pixels told apart, and
-only those next to the line by the exact predicates. So the masks are exact, however coarse the quick test.
+A set of samples is a word of 16 bits, in reading order; for sets of pixels see `_pixels`.
 """
 
 import cython
-from cython.cimports.libc.math import fabs, fabsf, sqrt
+from cython.cimports.libc.math import fabsf
 from cython.cimports.libc.stdlib import free, malloc, realloc
 from cython.cimports.penink_cli.arrangement._predicates import orient
-from cython.cimports.penink_cli.reconstruction._scene import side_of_query, side_of_vertex
+from cython.cimports.penink_cli.reconstruction._pixels import ALL, Pixels
+from cython.cimports.penink_cli.reconstruction._scene import side_of_query
 from cython.cimports.penink_cli.reconstruction._search import Finder
 
 COMPILED = cython.compiled
 
-ALL = cython.declare(cython.ulonglong, 0xFFFFFFFFFFFFFFFF)
-ROW = cython.declare(cython.ulonglong, 0xFF)
-COLUMN = cython.declare(cython.ulonglong, 0x0101010101010101)
-SLACK = cython.declare(cython.float, 1e-5)  # of the quick tests, in samples: ten times the worst rounding of a float
-NEAR = cython.declare(cython.float, 2e-5)  # of the masks, in pixels: ten times the worst rounding of a float
 BIT = cython.declare(cython.int[16])  # 1 << k: shifting by a vector of counts is dear without AVX2
-RAMP = cython.declare(cython.float[8])  # 0 … 7
-ROWS = cython.declare(cython.ulonglong[10])  # the first row of pixels from column k on, none from 8 on
-COLUMNS = cython.declare(cython.ulonglong[10])  # the first column from row k on
 
 
 @cython.cfunc
 def tabulate() -> cython.void:
-    """Fill the tables above."""
+    """Fill the table above."""
     k: cython.int
     for k in range(16):
         BIT[k] = 1 << k
-    for k in range(8):
-        RAMP[k] = k
-    for k in range(10):
-        ROWS[k] = (ROW << k) & ROW
-        COLUMNS[k] = COLUMN << (8 * k) if k < 8 else 0
 
 
 tabulate()
@@ -45,7 +30,7 @@ tabulate()
 
 @cython.final  # calls are direct, and inlined
 @cython.cclass
-class Tile:
+class Tile(Pixels):
     """Work space of one thread for one tile after the other.
 
     edge, edge_a, edge_b: the edges gathered around the tile, and their ends among its vertices.
@@ -121,16 +106,7 @@ class Tile:
         """Move to the pixels px × py of the cell whose top-left sample is (row cy, column cx), −1 included."""
         k: cython.int
         t: cython.int
-        self.cx = cx
-        self.cy = cy
-        self.px = px
-        self.py = py
-        self.nx = nx
-        self.ny = ny
-        self.mid_x = cython.cast(cython.float, 0.5 * (px[0] + px[nx - 1]) - cx)
-        self.mid_y = cython.cast(cython.float, 0.5 * (py[0] + py[ny - 1]) - cy)
-        self.half_x = cython.cast(cython.float, 0.5 * (px[nx - 1] - px[0])) + SLACK
-        self.half_y = cython.cast(cython.float, 0.5 * (py[ny - 1] - py[0])) + SLACK
+        self.stand(cx, cy, px, nx, py, ny)
         for k in range(4):
             t = cx - 1 + k
             self.column[k] = 0 if t < 0 else (self.scene.width - 1 if t >= self.scene.width else t)
@@ -208,14 +184,6 @@ class Tile:
                 elif self.hidden[s] == m:
                     self.all_hidden |= 1 << s
         return self.all_visible != 0xFFFF
-
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def pixels(self) -> cython.ulonglong:
-        """The set of all pixels of the tile."""
-        m: cython.ulonglong = COLUMN * (ROW >> (8 - self.nx))
-        return m if self.ny == 8 else m & ((cython.cast(cython.ulonglong, 1) << (8 * self.ny)) - 1)
 
     @cython.cfunc
     @cython.nogil
@@ -438,114 +406,6 @@ class Tile:
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)
-    def box_side(self, ax: cython.double, ay: cython.double, bx: cython.double, by: cython.double) -> cython.int:
-        """On which side of the line a → b the whole tile lies; 0 where it does not, or nearly not."""
-        dx: cython.double = bx - ax
-        dy: cython.double = by - ay
-        value: cython.double = dx * (self.cy + self.mid_y - ay) - dy * (self.cx + self.mid_x - ax)
-        extent: cython.double = fabs(dx) * self.half_y + fabs(dy) * self.half_x
-        return 1 if value > extent else (-1 if -value > extent else 0)
-
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def half_plane(
-        self,
-        ax: cython.double,
-        ay: cython.double,
-        bx: cython.double,
-        by: cython.double,
-        from_sample: cython.bint,
-    ) -> cython.ulonglong:
-        """The pixels on the positive side of the line from a, a vertex or else a sample, to the vertex b."""
-        value: cython.double = (bx - ax) * (self.py[0] - ay) - (by - ay) * (self.px[0] - ax)
-        gx: cython.double = -(by - ay) * self.step_x
-        gy: cython.double = (bx - ax) * self.step_y
-        by_rows: cython.bint = fabs(gx) >= fabs(gy)
-        main: cython.double = gx if by_rows else gy
-        minor: cython.double = gy if by_rows else gx
-        start: cython.float
-        slope: cython.float
-        low: cython.float = -0.75  # not near a pixel
-        high: cython.float = 8.25
-        half: cython.float = 0.5
-        one: cython.float = 1
-        v: cython.float
-        beyond = cython.declare(cython.int[8])
-        offset = cython.declare(cython.float[8])
-        near: cython.int = 0
-        j: cython.Py_ssize_t
-        m: cython.ulonglong = 0
-        if main == 0.0:  # a is b: every pixel is a tie
-            return self.exactly(ax, ay, bx, by, from_sample, m, ALL)
-        # Along line j of pixels the sign changes at v = start + j·slope; pixels beyond have the sign of main.
-        main = 1.0 / main
-        start = cython.cast(cython.float, -value * main)
-        slope = cython.cast(cython.float, -minor * main)
-        for j in range(8):
-            v = start + RAMP[j] * slope
-            v = v if v > low else low
-            v = v if v < high else high
-            beyond[j] = cython.cast(cython.int, v + one)
-            offset[j] = fabsf(v - cython.cast(cython.int, v + half))
-            near += 1 if offset[j] < NEAR else 0
-        if by_rows:
-            m = (
-                ROWS[beyond[0]] | ROWS[beyond[1]] << 8 | ROWS[beyond[2]] << 16 | ROWS[beyond[3]] << 24
-                | ROWS[beyond[4]] << 32 | ROWS[beyond[5]] << 40 | ROWS[beyond[6]] << 48 | ROWS[beyond[7]] << 56
-            )  # fmt: skip
-        else:
-            m = (
-                COLUMNS[beyond[0]] | COLUMNS[beyond[1]] << 1 | COLUMNS[beyond[2]] << 2 | COLUMNS[beyond[3]] << 3
-                | COLUMNS[beyond[4]] << 4 | COLUMNS[beyond[5]] << 5 | COLUMNS[beyond[6]] << 6 | COLUMNS[beyond[7]] << 7
-            )  # fmt: skip
-        if main < 0.0:
-            m = ~m
-        if near:
-            for j in range(8):
-                if offset[j] < NEAR:
-                    m = self.exactly(
-                        ax,
-                        ay,
-                        bx,
-                        by,
-                        from_sample,
-                        m,
-                        ROW << (8 * j) if by_rows else COLUMN << cython.cast(cython.ulonglong, j),
-                    )
-        return m
-
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def exactly(
-        self,
-        ax: cython.double,
-        ay: cython.double,
-        bx: cython.double,
-        by: cython.double,
-        from_sample: cython.bint,
-        m: cython.ulonglong,
-        unsure: cython.ulonglong,
-    ) -> cython.ulonglong:
-        """A mask with those of its pixels that are unsure decided by the exact predicates."""
-        k: cython.int
-        bit: cython.ulonglong
-        side: cython.int
-        unsure &= self.pixels()
-        for k in range(64):
-            bit = cython.cast(cython.ulonglong, 1) << k
-            if unsure & bit:
-                if from_sample:
-                    side = side_of_vertex(self.px[k & 7], self.py[k >> 3], ax, ay, bx, by)
-                else:
-                    side = side_of_query(ax, ay, bx, by, self.px[k & 7], self.py[k >> 3])
-                m = m | bit if side > 0 else m & ~bit
-        return m
-
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
     def edge_mask(self, k: cython.int) -> cython.ulonglong:
         """The pixels on the positive side of an edge."""
         a: cython.int
@@ -579,26 +439,6 @@ class Tile:
             )
             self.has_line[k] |= bit
         return self.line[16 * k + sample]
-
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def nearest(self, x: cython.double, y: cython.double) -> cython.double:
-        """Distance from a point to the box of the tile, or a little less."""
-        dx: cython.double = fabs(self.cx + self.mid_x - x) - self.half_x
-        dy: cython.double = fabs(self.cy + self.mid_y - y) - self.half_y
-        dx = 0.0 if dx < 0.0 else dx
-        dy = 0.0 if dy < 0.0 else dy
-        return sqrt(dx * dx + dy * dy)
-
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def farthest(self, x: cython.double, y: cython.double) -> cython.double:
-        """Distance from a point to the farthest corner of the tile, or a little more."""
-        dx: cython.double = fabs(self.cx + self.mid_x - x) + self.half_x
-        dy: cython.double = fabs(self.cy + self.mid_y - y) + self.half_y
-        return sqrt(dx * dx + dy * dy)
 
 
 @cython.cfunc

@@ -17,7 +17,7 @@ import numpy.typing as npt
 
 from penink_cli.errors import ParameterError
 from penink_cli.model import EdgeList, Floats, GreyImage
-from penink_cli.reconstruction import _render, _separable, _tile, _weights, paths
+from penink_cli.reconstruction import _desk, _pixels, _render, _separable, _tile, _weights, paths
 from penink_cli.reconstruction import threads as threading
 from penink_cli.reconstruction.kernels import is_bspline, taps
 from penink_cli.reconstruction.lattice import TILE, Axis, axis, centres
@@ -207,7 +207,7 @@ class _Enlargement:
             h = len(self.samples)
             finder = self.paths.finder(closed=True, rows=(min(max(source, 0), h - 1), max(1, min(last, h))))
             _render.retouch(
-                _tile.Tile(finder, x.step, y.step, 1 + spill(self.radius)), _render.Desk(), self.samples,
+                _tile.Tile(finder, x.step, y.step, 1 + spill(self.radius)), _desk.Desk(), self.samples,
                 self.where, *self.x_taps, x.cell, x.first,
                 y.taps.where[begin:end], self.y_taps[0][begin:end], self.y_taps[1][begin:end],
                 y.cell[a:b], y.first[a : b + 1] - y.first[a],
@@ -261,4 +261,4 @@ class _Reduction:
         return np.floor(np.clip(out, 0.0, self.maxval) + 0.5).astype(self.stored)
 
 
-COMPILED = paths.COMPILED and _render.COMPILED and _separable.COMPILED and _tile.COMPILED and _weights.COMPILED
+COMPILED = paths.COMPILED and all(kernel.COMPILED for kernel in (_desk, _pixels, _render, _separable, _tile, _weights))
