@@ -3,12 +3,23 @@
 What follows takes a tenth of a second to import; a Ctrl-C in that time is no fault to show a traceback for.
 """
 
+# Before anything else: the interpreter's own handler would end a Ctrl-C during the next imports in a traceback.
+# The module behind `signal` is built in, and costs nothing.
+import _signal  # type: ignore[import-not-found]
+import os
+
+if _signal.getsignal(_signal.SIGINT) is _signal.default_int_handler:
+    _signal.signal(_signal.SIGINT, _signal.SIG_DFL)
+
 from penink_cli import streams
 
 
 def main() -> None:
     """Entry point of the ``penink`` command."""
     streams.install_signals()
+    # numpy's linear algebra, of which little is used here, would start a thread a processor, each with its megabytes;
+    # under `ulimit -v` it spins for ever where it gets none.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     from penink_cli.main import main as run
 
     run()

@@ -342,7 +342,10 @@ def install_signals() -> None:
         signal.signal(number, signal.SIG_DFL)
     # Blocked in every thread to come, so that the waiting thread alone receives them.
     signal.pthread_sigmask(signal.SIG_BLOCK, deadly)
-    threading.Thread(target=_await, args=(deadly,), daemon=True, name="signals").start()
+    try:
+        threading.Thread(target=_await, args=(deadly,), daemon=True, name="signals").start()
+    except RuntimeError:  # no thread to be had: they kill at once, and the next run removes what is left
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, deadly)
 
 
 def _await(deadly: set[signal.Signals]) -> None:

@@ -65,6 +65,20 @@ def test_stopped_while_it_waits_for_input(number, inputs, tmp_path):
     assert (process.returncode, err) == (-number, b"") and os.listdir(tmp_path) == []
 
 
+def test_ctrl_c_while_it_still_imports():
+    """From the first line of ours on, it kills without a traceback, also where no thread can be had to wait for it."""
+    script = "import signal, penink_cli.__main__; signal.raise_signal(signal.SIGINT)"
+    done = subprocess.run([sys.executable, "-c", script], env=environment(), capture_output=True, check=False)
+    assert (done.returncode, done.stderr) == (-signal.SIGINT, b"")
+    script = (
+        "import signal, threading, penink_cli.__main__ as m\n"
+        "def start(thread): raise RuntimeError\n"
+        "threading.Thread.start = start; m.streams.install_signals(); signal.raise_signal(signal.SIGTERM)"
+    )
+    done = subprocess.run([sys.executable, "-c", script], env=environment(), capture_output=True, check=False)
+    assert (done.returncode, done.stderr) == (-signal.SIGTERM, b"")
+
+
 def test_a_signal_that_the_caller_ignores_is_ignored(server, inputs, tmp_path):
     """As under nohup, or for a job in the background of a script."""
     for number in (signal.SIGINT, signal.SIGHUP):
