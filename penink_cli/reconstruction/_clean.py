@@ -303,9 +303,7 @@ def extrapolate(
                         if seen[k]:
                             clean[k] = seen[k] & _bits(cython.address(ground.clean[i - reach + k, 0]), j - reach)
                     weights = cython.address(table[24 - reach])
-                    done = _plane(
-                        values, clean, i, j, reach, j, i, weights, weights, stiffness, cython.address(value)
-                    )
+                    done = _plane(values, clean, i, j, reach, j, i, weights, weights, stiffness, cython.address(value))
                     if done or reach == 24:
                         break
                     reach = min(24, 2 * reach)
@@ -446,7 +444,5 @@ def resample(
                     across[k] = exp(-d * d / (2 * spread * spread))
                     d = pi - steps + k - (y - 0.5)
                     down[k] = exp(-d * d / (2 * spread * spread))
-                _plane(
-                    values, seen, pi, pj, steps, x - 0.5, y - 0.5, across, down, stiffness, cython.address(value)
-                )
+                _plane(values, seen, pi, pj, steps, x - 0.5, y - 0.5, across, down, stiffness, cython.address(value))
                 out[i, j] = value

@@ -21,7 +21,7 @@ import numpy as np
 import numpy.typing as npt
 
 from penink_cli.model import EdgeList, Floats
-from penink_cli.reconstruction import _fit, _tile
+from penink_cli.reconstruction import _banded, _fit, _tile
 from penink_cli.reconstruction import threads as threading
 from penink_cli.reconstruction.lattice import Axis, axis
 from penink_cli.reconstruction.paths import Paths, spill
@@ -36,6 +36,7 @@ _HALO = 3
 _BLOCK_PX = 128
 _NEAR = 3.0  # samples: an edge farther away changes no pixel that these samples are fitted to
 _SPAN = 5
+_CROWDED = 8  # edges a sample, in a block: more say nothing that samples could be fitted to, and cost by their square
 _PLAIN_HOLD = 0.01
 
 
@@ -88,14 +89,14 @@ def _along(photo: Grey32, count: int, kernel: Floats, fine: int) -> Floats:
     # Held to the mean of what each sample touches, where blur has left the photo nothing to tell.
     touched = np.bincount((low[:, None] + np.arange(span)).ravel(), weight.ravel(), minlength=count)
     means = np.zeros((count, photo.shape[1]))
-    _fit.transposed(low, weight, photo, means)
+    _banded.transposed(low, weight, photo, means)
     means /= touched[:, None]
     rest = photo.copy()
-    _fit.leave(low, weight, means, rest)
+    _banded.leave(low, weight, means, rest)
     out = np.zeros_like(means)
-    _fit.transposed(low, weight, rest, out)
+    _banded.transposed(low, weight, rest, out)
     band[:, 0] += _PLAIN_HOLD * pixels / count
-    _fit.solve_banded(band, out)
+    _banded.solve_banded(band, out)
     return out + means
 
 
@@ -109,7 +110,7 @@ def fit_samples(
     hold: float = HOLD,
     threads: int | None = None,
 ) -> Floats:
-    """Samples near edges, fitted to the photo; the others stay as they are.
+    """Samples near edges, fitted to the photo; the others stay as they are, and so do those in a crowd of edges.
 
     Args:
         photo: (h, w), 0 … 1, at least as large as the grid of samples.
@@ -135,6 +136,7 @@ def fit_samples(
         blur_kernel(blur),
         fine,
         hold,
+        _crowds(edges, width, height),
     )
     side = max(8, round(_BLOCK_PX * width / w))
     out = start.copy()
@@ -147,11 +149,21 @@ class _Fit:
     """The blocks of one fit."""
 
     def __init__(
-        self, photo: Grey32, paths: Paths, start: Floats, x: Axis, y: Axis, kernel: Floats, fine: int, hold: float
+        self,
+        photo: Grey32,
+        paths: Paths,
+        start: Floats,
+        x: Axis,
+        y: Axis,
+        kernel: Floats,
+        fine: int,
+        hold: float,
+        crowds: npt.NDArray[np.int64],
     ) -> None:
         self.photo, self.paths, self.start, self.x, self.y = photo, paths, start, x, y
         self.kernel, self.fine, self.hold = kernel, fine, hold
         self.height, self.width = start.shape
+        self.crowds = crowds
         self.x_base, self.x_plain = _plain_rows(x, self.width, fine)
         self.y_base, self.y_plain = _plain_rows(y, self.height, fine)
 
@@ -169,6 +181,8 @@ class _Fit:
         top, bottom, first, last = band
         begin, end = max(0, left - _HALO), min(self.width, right + _HALO)
         if _fit.clear(tile, left - _NEAR, top - _NEAR, right + _NEAR, bottom + _NEAR):
+            return
+        if self.crowds[first:last, begin:end].sum() > _CROWDED * (last - first) * (end - begin):
             return
         rows, columns = _pixels(self.y_base, first, last, self.height), _pixels(self.x_base, begin, end, self.width)
         if rows[0] >= rows[1] or columns[0] >= columns[1]:
@@ -193,6 +207,13 @@ class _Fit:
             self.hold, _STEPS, samples, np.empty((3, *samples.shape)), np.empty((2, *shape)),
         )  # fmt: skip
         out[top:bottom, left:right] = samples[top - first : bottom - first, left - begin : right - begin]
+
+
+def _crowds(edges: EdgeList, width: int, height: int) -> npt.NDArray[np.int64]:
+    """How many edges begin in each cell (height, width) of the samples."""
+    begins = edges.scaled(width, height)[edges.edges[:, 0]].astype(int)
+    row, column = np.clip(begins[:, 1], 0, height - 1), np.clip(begins[:, 0], 0, width - 1)
+    return np.bincount(row * width + column, minlength=width * height).reshape(height, width)
 
 
 def _plain_rows(along: Axis, count: int, fine: int) -> tuple[npt.NDArray[np.int32], Grey32]:

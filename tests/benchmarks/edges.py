@@ -149,10 +149,10 @@ def round_trips(scenes: int) -> None:
 def storage() -> None:
     """Must show 4.
 
-    A poster's strokes are as large as a page's, so there are nine times as many in 24 inches as in 8, which take a
-    ninth of the time; for the first photograph the poster itself is drawn too.
+    A poster's strokes are as large as a page's, so there are sixteen times as many in 24 inches as in 6, which take a
+    sixteenth of the time; for the first photograph the poster itself is drawn too.
     """
-    print("\n--auto --max-error 8: the grid, the illustration packed, its PostScript at 24 in (9 times 8 in)")
+    print("\n--auto --max-error 8: the grid, the illustration packed, its PostScript at 24 in (16 times 6 in)")
     for name in PHOTOS:
         photo = photograph(name)
         edges = detect_edges(photo)
@@ -163,7 +163,7 @@ def storage() -> None:
         samples = GreyImage.from_grey(grid.samples)
         layer = Layer(samples, edges, find_texture("stipple"), "stipple")
         packed = len(archive.pack(illustration.members(settled(Illustration(576, 576 * height / width, (layer,))))))
-        sizes = {texture: 9 * _paper(samples, edges, texture, 8) for texture in ("crosshatch", "scribble", "stipple")}
+        sizes = {texture: 16 * _paper(samples, edges, texture, 6) for texture in ("crosshatch", "stipple")}
         print(
             f"{name:10s} {width} x {height} (factor {photo.shape[1] / width:.1f}), error {255 * grid.error:.2f}, "
             f"{grid.empty_regions} empty regions, {packed / 1e3:.1f} kB, found in {seconds:.1f} s of processor; "
