@@ -66,6 +66,8 @@ def blast(
         parts = tile.blast_tile(sheet, texture, edges, enters, seed, rule == "strict", pen_pt, tick)
         strokes = hatching.join(parts, width_pt, height_pt)
         if rule == "best" and pen_pt is None and len(strokes):
+            sheet.clear()  # the best round may not have been the last
+            hatching.paint(sheet, strokes)
             strokes = hatching.press(sheet, strokes, seed)
     tick()
     return replace(strokes, texture=texture.name, seed=seed)
