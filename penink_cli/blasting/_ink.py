@@ -166,8 +166,9 @@ def _half_width(width: cython.double, gain: cython.double, dx: cython.double, dy
     """Half the width that the device paints, see `sheet.Sheet`."""
     length: cython.double = sqrt(dx * dx + dy * dy)
     if length < 1e-9:
-        # a disc touches as many pixels as one this much wider (the mean over all directions)
-        return 0.5 * (width + 1.2732395447 * GAIN * gain)
+        # a disc touches as many pixels as one this much wider: Ghostscript's, from 0.4 to 2.5 pt at 300 to 1200 dpi,
+        # are 1.15 to 1.18 pixels wider, for it draws polygons inscribed in them
+        return 0.5 * (width + 1.16 * gain)
     return 0.5 * (width + GAIN * gain * (fabs(dx) + fabs(dy)) / length)
 
 
@@ -434,6 +435,7 @@ def place(
     good: cython.double
     least: cython.Py_ssize_t
     least_wall: cython.Py_ssize_t
+    long: cython.double
     ink = scratch[0]
     own = scratch[1]
     due = scratch[2]
@@ -453,8 +455,13 @@ def place(
             else:
                 nx = 0.0
                 ny = 1.0
-            # lengths of runs become numbers of pieces
+            # lengths of runs become numbers of pieces; a loop is much longer than its ends are apart
             n = p1 - p0
+            long = 0.0
+            for j in range(p0, p1):
+                long += sqrt((points[j + 1, 0] - points[j, 0]) ** 2 + (points[j + 1, 1] - points[j, 1]) ** 2)
+            if long > 1.2 * d:
+                d = long
             least = 1
             least_wall = 1
             if n > 0:

@@ -79,7 +79,7 @@ def blast_by_threshold(
         sizes.screens, draw(ink, ends, squares, sizes, width_pt, height_pt, unit, bare=bare), strict=True
     ):
         pen = pen_pt or max(sizes.pen_pt * unit - gain * screen.widens, 0.02)
-        parts.append(_smooth(*_within(points, stops, width_pt, height_pt), pen))
+        parts.append(_smooth(*_within(points, stops, width_pt, height_pt, pen / 2), pen))
     control = np.concatenate([points for points, _, _ in parts])
     counts = np.concatenate([count for _, count, _ in parts])
     return Strokes(width_pt, height_pt, control, curves.starts(counts), np.concatenate([w for _, _, w in parts]))
@@ -100,14 +100,16 @@ def _unit(sizes: ThresholdTable, pen_pt: float | None, gain_pt: float) -> float:
     return max(sizes.magnification, LEAST_PIXELS * gain_pt / sizes.pen_pt)
 
 
-def _within(points: Floats, stops: Ints, width: float, height: float) -> tuple[Floats, Ints]:
-    """The parts of polylines that lie on the page: a device clips to it."""
+def _within(points: Floats, stops: Ints, width: float, height: float, rim: float) -> tuple[Floats, Ints]:
+    """The parts of polylines that lie on the page and no nearer than rim to its border: a device clips ink to it."""
+    least = np.minimum(rim, (width / 2, height / 2))
+    most = (width, height) - least
     begin = np.setdiff1d(np.arange(len(points)), stops - 1)
     a, step = points[begin], points[np.minimum(begin + 1, len(points) - 1)] - points[begin]
     with np.errstate(divide="ignore", invalid="ignore"):
-        cross = np.stack([-a / step, ((width, height) - a) / step])
+        cross = np.stack([(least - a) / step, (most - a) / step])
     # along an axis on which a segment does not move it is inside for good, or never
-    still = np.where((a >= 0) & (a <= (width, height)), np.inf, -np.inf)
+    still = np.where((a >= least) & (a <= most), np.inf, -np.inf)
     enters = np.where(step == 0, -still, np.minimum(*cross)).max(axis=1).clip(0.0, None)
     leaves = np.where(step == 0, still, np.maximum(*cross)).min(axis=1).clip(None, 1.0)
     # a dot has no length to be inside with

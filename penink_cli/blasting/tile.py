@@ -20,8 +20,9 @@ MOVES = (-0.5, 0.5, 0.0)
 STEP_PT = 1.5
 #: Copies of strokes that are laid out at a time: memory stays bounded on any sheet.
 CHUNK = 12_000
-#: A stroke is not tried where the tone is lighter by this than where it enters.
-SLACK = 0.15
+#: A stroke is not tried where the tone is lighter by this than where it enters: tiles have holes that only late strokes
+#: fill. Whole strokes lie so evenly that fewer will do.
+SLACK, SLACK_WHOLE = 0.4, 0.15
 
 
 def thresholds(texture: Texture, gain_pt: float) -> Floats:
@@ -168,10 +169,15 @@ def _place(
     """One pass over all copies in order of priority; strokes that may be trimmed end at the borders."""
     out = []
     plain = strict or texture.whole
-    for part in copies(texture, enters, sheet, seed, 2.0 if strict else SLACK, pen):
+    for part in copies(texture, enters, sheet, seed, 2.0 if strict else SLACK_WHOLE if texture.whole else SLACK, pen):
         points, first, widths = part.points, part.first, part.widths
         pieces = curves.pieces_of(points, first, STEP_PT)
         lines = curves.sample(points, first, pieces)
+        if not strict:  # a dot half outside the frame is moved inside, or dark pictures get a white rim
+            dots = np.diff(first) == 1
+            at = points[first[:-1][dots]]
+            points[first[:-1][dots]] = np.clip(at, borders.box[:2], borders.box[2:])
+            lines = curves.sample(points, first, pieces)
         none = np.zeros(len(widths))
         cuts = walls.cut(borders, lines, widths + sheet.gain_pt, (none, none))
         points, first = curves.cut(points, first, pieces, cuts.curve, cuts.start, cuts.end)
