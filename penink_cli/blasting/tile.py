@@ -23,6 +23,8 @@ CHUNK = 12_000
 #: A stroke is not tried where the tone is lighter by this than where it enters: tiles have holes that only late strokes
 #: fill. Whole strokes lie so evenly that fewer will do.
 SLACK, SLACK_WHOLE = 0.4, 0.15
+#: Lighter than this dots along the frame would look like a line.
+RIM_TONE = 0.6
 
 
 def thresholds(texture: Texture, gain_pt: float) -> Floats:
@@ -173,10 +175,12 @@ def _place(
         points, first, widths = part.points, part.first, part.widths
         pieces = curves.pieces_of(points, first, STEP_PT)
         lines = curves.sample(points, first, pieces)
-        if not strict:  # a dot half outside the frame is moved inside, or dark pictures get a white rim
-            dots = np.diff(first) == 1
-            at = points[first[:-1][dots]]
-            points[first[:-1][dots]] = np.clip(at, borders.box[:2], borders.box[2:])
+        if not strict:  # in the dark a dot half outside the frame is moved inside, or there would be a white rim
+            dots = first[:-1][np.diff(first) == 1]
+            at = np.floor(points[dots] * (sheet.columns / sheet.width, sheet.rows / sheet.height)).astype(np.int64)
+            at = np.clip(at, 0, (sheet.columns - 1, sheet.rows - 1))
+            dots = dots[sheet.tone[at[:, 1], at[:, 0]] > RIM_TONE]
+            points[dots] = np.clip(points[dots], borders.box[:2], borders.box[2:])
             lines = curves.sample(points, first, pieces)
         none = np.zeros(len(widths))
         cuts = walls.cut(borders, lines, widths + sheet.gain_pt, (none, none))
