@@ -25,36 +25,36 @@ def _side(a: Point, b: Point, sample: Point) -> bool:
     return (turn or a[1] - b[1] or b[0] - a[0]) > 0
 
 
-def _passed(a: Point, b: Point, cell: int) -> list[Point]:
+def _passed(a: Point, b: Point, cell: int, first: float) -> list[Point]:
     """Samples within a few grid steps of the edge a → b: the nearest one for each line of samples that it crosses."""
     steep = abs(b[1] - a[1]) > abs(b[0] - a[0])
     (u0, v0), (u1, v1) = ((a[1], a[0]), (b[1], b[0])) if steep else (a, b)
     if u0 == u1:
         return []
     low, high = min(u0, u1), max(u0, u1)
-    half = cell / 2
     found = []
-    for i in range(math.ceil((low - half) / cell), math.floor((high - half) / cell) + 1):
-        u = half + cell * i
+    for i in range(math.ceil((low - first) / cell), math.floor((high - first) / cell) + 1):
+        u = first + cell * i
         v = v0 + (v1 - v0) * (u - u0) / (u1 - u0)
-        nearest = half + cell * math.floor(v / cell)
+        nearest = first + cell * math.floor((v - first) / cell + 0.5)
         if abs(v - nearest) <= 2 * (_REACH + 1):
             found.append((nearest, u) if steep else (u, nearest))
     return found
 
 
-def _changed(a: Point, b: Point, to_a: Point, to_b: Point, cell: int) -> list[Point]:
+def _changed(a: Point, b: Point, to_a: Point, to_b: Point, cell: int, first: float) -> list[Point]:
     """The samples that change sides as the edge a → b moves."""
-    return [s for s in _passed(to_a, to_b, cell) if _side(a, b, s) != _side(to_a, to_b, s)]
+    return [s for s in _passed(to_a, to_b, cell, first) if _side(a, b, s) != _side(to_a, to_b, s)]
 
 
-def rounded_beside_samples(exact: Floats, ends: Ints, cell: int) -> Ints:
+def rounded_beside_samples(exact: Floats, ends: Ints, cell: int, first: float | None = None) -> Ints:
     """Grid points (n, 2) next to exact vertices (n, 2) that leave samples on their sides of the edges ends (m, 2).
 
-    exact: in steps of the grid, of which `cell` go to a sample's spacing; sample i lies at cell (i + ½). Most are
-    the nearest grid points. Where no choice near by serves a vertex, the one by which the fewest samples change
-    sides is taken. What is on the grid already stays.
+    exact: in steps of the grid, of which `cell` go to a sample's spacing; sample i lies at first + cell i, where
+    first is cell / 2 unless given. Most are the nearest grid points. Where no choice near by serves a vertex, the one
+    by which the fewest samples change sides is taken. What is on the grid already stays.
     """
+    first = cell / 2 if first is None else first
     near = np.rint(exact).astype(np.int64)
     # what was on the grid before it was scaled to the frame and back is so exactly
     exact = np.where(np.abs(exact - near) < 1e-6, near, exact)
@@ -72,7 +72,7 @@ def rounded_beside_samples(exact: Floats, ends: Ints, cell: int) -> Ints:
         for e in around[v]:
             a, b = edges[e]
             to_a, to_b = place if a == v else grid[a], place if b == v else grid[b]
-            count += len(_changed(at[a], at[b], to_a, to_b, cell))
+            count += len(_changed(at[a], at[b], to_a, to_b, cell, first))
         return count
 
     def settle(v: int) -> None:
@@ -88,7 +88,7 @@ def rounded_beside_samples(exact: Floats, ends: Ints, cell: int) -> Ints:
                 best, grid[v] = count, place
 
     for _ in range(_ROUNDS):
-        wrong = [e for e, (a, b) in enumerate(edges) if _changed(at[a], at[b], grid[a], grid[b], cell)]
+        wrong = [e for e, (a, b) in enumerate(edges) if _changed(at[a], at[b], grid[a], grid[b], cell, first)]
         if not wrong:
             break
         for e in wrong:

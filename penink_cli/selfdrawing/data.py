@@ -6,6 +6,7 @@ import itertools
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from penink_cli.errors import LimitError
 from penink_cli.model import EdgeList, Floats, GreyImage, Illustration, Ints, Layer, OutlineChoice
@@ -69,7 +70,11 @@ def _layer(layer: Layer, w: int, h: int, number: int) -> LayerData:
             )
         found = trails(ends, len(vertices))
         pixel = np.array([layer.edges.width / w, layer.edges.height / h]) / PARTS
-        chosen = [_is_outlined(trail, vertices * pixel, strength, layer.outline) for trail in found]
+        around = _around(layer, vertices, ends, w, h)
+        chosen = [
+            bool(around[trail[1]].all()) and _is_outlined(trail, vertices * pixel, strength, layer.outline)
+            for trail in found
+        ]
         outlined = sum(chosen)
         found = [t for t, c in zip(found, chosen, strict=True) if c] + [
             t for t, c in zip(found, chosen, strict=True) if not c
@@ -102,9 +107,25 @@ def as_sent(layer: Layer) -> tuple[GreyImage, EdgeList | None]:
     if layer.edges is None or not len(layer.edges.edges):
         return samples, None
     vertices, ends, strength = on_lattice(layer.edges, w, h)
+    return samples, _within_the_frame(vertices, ends, strength, w, h)
+
+
+def _within_the_frame(vertices: Ints, ends: Ints, strength: Floats | None, w: int, h: int) -> EdgeList:
+    """Edges on the lattice as an edge list in 32nds of a sample."""
     across, down = 2 * PARTS * w, 2 * PARTS * h
     inside = np.clip(2 * vertices + 1, 0, (across, down)).astype(np.float64)
-    return samples, EdgeList(across, down, inside, ends, strength)
+    return EdgeList(across, down, inside, ends, strength)
+
+
+def _around(layer: Layer, vertices: Ints, ends: Ints, w: int, h: int) -> npt.NDArray[np.bool_]:
+    """Which edges (m,) are around the regions that the layer's outline choice names: all, where it names none."""
+    if layer.outline is None or not layer.outline.regions or layer.edges is None:
+        return np.ones(len(ends), bool)
+    from penink_cli.arrangement import regions
+
+    edges = _within_the_frame(vertices, ends, None, w, h)
+    points = np.array(layer.outline.regions, np.float64) / (layer.edges.width, layer.edges.height)
+    return regions.edges_around(edges, points * (edges.width, edges.height))
 
 
 def samples_bytes(ink: Ints, levels: int) -> bytes:

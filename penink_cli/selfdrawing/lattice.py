@@ -11,6 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from penink_cli.arrangement.quantisation import quantise
+from penink_cli.arrangement.sides import rounded_beside_samples
 from penink_cli.model import EdgeList, Floats, Ints
 
 PARTS = 16  # lattice lines a sample
@@ -25,7 +26,9 @@ def on_lattice(edges: EdgeList, w: int, h: int) -> tuple[Ints, Ints, Floats | No
     """
     scale = np.array([w, h]) * PARTS
     at = edges.scaled(float(scale[0]), float(scale[1]))
-    near = np.minimum(np.floor(at), scale)
+    # samples stay on their sides of the edges; vertex i lies at i + ½, and the first sample's centre at 8
+    beside = rounded_beside_samples(at - 0.5, edges.edges, PARTS, PARTS / 2 - 0.5)
+    near = np.where(at >= scale, scale, np.clip(beside, 0, scale - 1))
     near = np.where(at <= 0, -1, near)
     grid = EdgeList(int(scale[0]) + 2, int(scale[1]) + 2, near + 1, edges.edges, edges.strength)
     moved = quantise(grid, grid.width, grid.height)

@@ -10,7 +10,7 @@ import pytest
 
 from penink_cli.errors import LimitError
 from penink_cli.model import GreyImage, OutlineChoice
-from penink_cli.selfdrawing import packer, postscript
+from penink_cli.selfdrawing import data, packer, postscript
 from penink_cli.texture_options import find_texture
 from tests.selfdrawing.pictures import expected_tone, ghostscript, illustration, printed
 
@@ -122,6 +122,17 @@ def test_outlines_are_drawn_and_weigh_in_the_tone(tmp_path):
     # the top of the disc, where the outline runs through light hatching
     y, x = round(300 * 1.5 * 0.23), round(300 * 1.5 * 0.4)
     assert (outlined[y - 3 : y + 4, x - 8 : x + 8] < 128).any(axis=0).all()
+
+
+def test_outlines_are_those_of_the_regions_chosen():
+    found = {}
+    for regions in ((), ((256.0, 288.0),), ((620.0, 30.0),)):
+        (layer,) = data.layers(illustration(outline=OutlineChoice(pen_pt=1.0, regions=regions)))
+        found[regions] = layer.outlined
+    within, without = list(found.values())[1:]
+    assert found[()] == 2  # the disc, and the crease
+    assert within == 1  # the disc alone is around what is in it
+    assert without == 2
 
 
 def test_too_many_samples_are_refused_in_one_line():
