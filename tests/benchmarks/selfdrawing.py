@@ -84,7 +84,7 @@ def tone(page: np.ndarray, layer: Layer, inches: float) -> tuple[float, float]:
 def size(folder: Path) -> None:
     """Bytes."""
     print("samples, edges: bytes of EPS, Level 2, page (at most 20, 26 and 32 KB)")
-    for n, options in ((96, {}), (128, {}), (128, {"min_length": 16.0, "high": 0.26})):
+    for n, options in ((96, {}), (128, {}), (128, {"min_length": 12.0, "high": 0.26, "tolerance": 0.5})):
         p = picture("camera", n, **options)
         sizes = [len(postscript.write(p)), len(postscript.write(p, "lzw")), len(html.write(p, "camera"))]
         print(f"  {n} x {n}, {len(data.as_sent(p.layers[0])[1].edges)}: {sizes}")
