@@ -9,6 +9,7 @@ import json
 import os
 import resource
 import shutil
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -261,9 +262,14 @@ def startup(folder):
     p detect-edges photo.png -o e.json
     p extract-samples -e e.json photo.png | p reduce -e e.json --factor 2 | p enlarge -e e.json --scale 4 |
     p blast -e e.json --width 0.5in | p to-ps > photo.ps"""
+    # with compiled bytecode at hand, as a program that is installed has it
     environment = {**os.environ, "PYTHON": sys.executable, "PYTHONPATH": str(ROOT)}
-    seconds, _ = cpu("bash", "-e", "-o", "pipefail", "-c", script, cwd=folder, env=environment)
-    print(f"   a chain of six filters on 32 x 24 pixels, all its work and six interpreters included: {seconds:.2f} s")
+    environment |= {"PYTHONPYCACHEPREFIX": str(folder / "bytecode"), "PYTHONDONTWRITEBYTECODE": ""}
+    seconds = [cpu("bash", "-e", "-o", "pipefail", "-c", script, cwd=folder, env=environment)[0] for _ in range(6)]
+    print(
+        "   a chain of six filters on 32 x 24 pixels, all its work and six interpreters included: "
+        f"{statistics.median(seconds[1:]):.2f} s"
+    )
 
 
 def main():
