@@ -158,6 +158,8 @@ def billiard(s: Studio) -> None:
     s.print("billiard", "billiard-print", 6.667)
 
 
+CUP = (0.13, 0.0, 2 / 3)  # the part of the coffee shown in each texture, and its side on paper
+SWATCH = 1.9
 TEXTURES = ("parallel", "crosshatch", "crosshatch4", "grain", "scribble", "stipple", "brick", "grass")
 
 
@@ -166,7 +168,7 @@ def textures(s: Studio) -> None:
     s.represent("coffee.png", "small", 80, "--high", 0.2, "--min-length", 20)
     for texture in TEXTURES:
         s.illustrate(f"small-{texture}", 2, [{"of": "small", "texture": texture}])
-        s.print(f"small-{texture}", f"small-{texture}", 2.0)
+        s.print(f"small-{texture}", f"small-{texture}", round(SWATCH / CUP[2], 4))
 
 
 # ------------------------------------------------------------------- the page
@@ -277,11 +279,11 @@ def compose(folder: Path) -> None:
     sheet.drawing(x, y, folder / "man-with.eps", crop=HEAD)
     sheet.text(x, y + h + 18, "enlarged with their discontinuities.")
     x += w + 22
-    small = (PAGE[0] - MARGIN - x - 3 * 10) / 4 / inch
+    across = (PAGE[0] - MARGIN - x - SWATCH * inch) / 3
     for i, texture in enumerate(TEXTURES):
-        at = x + i % 4 * (small * inch + 10), y + i // 4 * (h - small * inch * 2 / 3)
-        _, deep = sheet.drawing(*at, folder / f"small-{texture}.eps", small * inch)
-        sheet.text(at[0], at[1] + deep + 16, f"7  {texture}" if i == 0 else texture)
+        at = x + i % 4 * across, y + i // 4 * (h - SWATCH * inch)
+        _, deep = sheet.drawing(*at, folder / f"small-{texture}.eps", crop=CUP)
+        sheet.text(at[0], at[1] + deep + (18 if i > 3 else 16), f"7  {texture}" if i == 0 else texture)
     y += h + 40
     side, gap = 2.75 * inch, 10.0
     panels = ("samples", "edges", "plain", "sharp", "plain-drawn", "sharp-drawn")
