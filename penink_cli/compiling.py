@@ -9,6 +9,7 @@ What Cython puts into every module that takes an array (the memoryview type, som
 """
 
 import os
+import subprocess
 
 from Cython.Build import cythonize
 from setuptools import Extension
@@ -19,6 +20,11 @@ SHARED = "penink_cli._shared"
 
 class BuildKernels(build_ext):
     """`build_ext` that translates serially and compiles in parallel."""
+
+    def initialize_options(self) -> None:
+        """Nothing is known yet of the C compiler."""
+        super().initialize_options()
+        self._flags: dict[str, bool] = {}
 
     def finalize_options(self) -> None:
         """Use every processor this process may run on, unless `--parallel` says otherwise."""
@@ -35,4 +41,13 @@ class BuildKernels(build_ext):
         translated = cythonize(self.extensions, force=self.force, quiet=quiet, shared_utility_qualified_name=SHARED)
         for kernel, in_c in zip(self.extensions, translated, strict=True):
             kernel.sources = in_c.sources
+        for kernel in self.extensions:
+            kernel.extra_compile_args = [flag for flag in kernel.extra_compile_args if self._known(flag)]
         super().build_extensions()
+
+    def _known(self, flag: str) -> bool:
+        """Whether the C compiler takes the flag: clang refuses gcc's cost models, for one, and needs none."""
+        if flag not in self._flags:
+            empty = [*self.compiler.compiler, "-Werror", flag, "-fsyntax-only", "-x", "c", os.devnull]
+            self._flags[flag] = subprocess.run(empty, capture_output=True, check=False).returncode == 0
+        return self._flags[flag]
