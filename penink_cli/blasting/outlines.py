@@ -40,13 +40,21 @@ WAVER_PT = 30.0  # over about that length
 class Run:
     """Part of a chain: vertices (n, 2) in pixels of the edge list, whether it closes on itself.
 
+    trail, edges: the numbers of its n vertices and n - 1 edges.
     strength: the mean along it, 0 … 1. weight: how telling it is, strength times length.
     """
 
     vertices: Floats
+    trail: list[int]
+    edges: list[int]
     ring: bool
     strength: float
     weight: float
+
+    @property
+    def pressure(self) -> float:
+        """Of the pen's width, how much it gets: less the fainter it is."""
+        return LIGHT + (1 - LIGHT) * min(1.0, self.strength / FULL)
 
 
 def outline(
@@ -68,7 +76,7 @@ def outline(
     if ink is not None and len(ink):
         clear.take(_dots(ink, clear.cell))
     parts: list[tuple[Floats, Floats]] = []
-    for run in sorted(_runs(edges, choice, around), key=lambda r: (-r.weight, *r.vertices[0])):
+    for run in runs(edges, choice, around):
         points = _resampled(run.vertices, STEP)
         for part, ring in clear.free(points * scale, run.ring, SHORTEST * choice.pen_pt):
             tolerance = max(TOLERANCE, TOLERANCE_PT / pixel_pt)
@@ -76,8 +84,7 @@ def outline(
             if choice.even:
                 parts.append((control, np.array([choice.pen_pt])))
             else:
-                pressure = LIGHT + (1 - LIGHT) * min(1.0, run.strength / FULL)
-                parts.append(_swelling(control, pressure * choice.pen_pt))
+                parts.append(_swelling(control, run.pressure * choice.pen_pt))
         clear.take(points * scale)
     return _strokes(parts, width_pt, height_pt)
 
@@ -85,11 +92,13 @@ def outline(
 # ------------------------------------------------------------------- which edges
 
 
-def _runs(edges: EdgeList, choice: OutlineChoice, around: npt.NDArray[np.bool_] | None) -> list[Run]:
-    """Chains, or the parts of them that are strong enough: all above half of min_strength, reaching it somewhere."""
-    ends, strength = edges.edges, edges.strength
-    if around is not None:
-        ends, strength = ends[around], None if strength is None else strength[around]
+def runs(edges: EdgeList, choice: OutlineChoice, around: npt.NDArray[np.bool_] | None) -> list[Run]:
+    """Chains, or the parts of them that are strong enough, the most telling first.
+
+    Those are all above half of min_strength that reach it somewhere. around: as in `outline`.
+    """
+    chosen = np.arange(len(edges.edges)) if around is None else np.flatnonzero(around)
+    ends, strength = edges.edges[chosen], None if edges.strength is None else edges.strength[chosen]
     lengths = np.sqrt(((edges.vertices[ends[:, 0]] - edges.vertices[ends[:, 1]]) ** 2).sum(axis=1))
     found = []
     for vertices, chain in trails(edges.vertices, ends, ONWARD):
@@ -101,9 +110,11 @@ def _runs(edges: EdgeList, choice: OutlineChoice, around: npt.NDArray[np.bool_] 
             if length < choice.min_length or mean[i:j].max() < choice.min_strength:
                 continue
             weight = float((mean[i:j] * lengths[chain[i:j]]).sum())
+            trail = vertices[i : j + 1]
             ring = whole and vertices[0] == vertices[-1]
-            found.append(Run(edges.vertices[vertices[i : j + 1]], ring, weight / length, weight))
-    return found
+            along = chosen[chain[i:j]].tolist()
+            found.append(Run(edges.vertices[trail], trail, along, ring, weight / length, weight))
+    return sorted(found, key=lambda run: (-run.weight, *run.vertices[0]))
 
 
 def _smoothed(strength: Floats, lengths: Floats, reach: int = 2) -> Floats:

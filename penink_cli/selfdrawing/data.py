@@ -2,22 +2,21 @@
 
 from __future__ import annotations
 
-import itertools
+import math
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from penink_cli.blasting.outlines import Run, runs
 from penink_cli.errors import LimitError
-from penink_cli.model import EdgeList, Floats, GreyImage, Illustration, Ints, Layer, OutlineChoice
+from penink_cli.model import EdgeList, Floats, GreyImage, Illustration, Ints, Layer
 from penink_cli.selfdrawing.lattice import PARTS, on_lattice
 from penink_cli.textures import threshold
+from penink_cli.trails import trails
 
 #: Arrays of a Level 2 interpreter hold 65535 entries, one a sample: 254 × 254 and its border.
 MOST_SAMPLES = 254
 MOST_EDGES = 20000
-
-Trail = tuple[list[int], list[int]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,6 +27,7 @@ class LayerData:
     samples: a byte a sample, coded. edges: bytes of the chains.
     chains, outlined, vertices, ends: how many chains, how many of them (the first) are outlined, vertices, edges.
     outline_pt: pen of the outlines. gamma: of the tone curve. table: of the texture.
+    family: the number of the first layer with the same texture and pen, whose strokes lie in the same places.
     """
 
     width: int
@@ -42,6 +42,7 @@ class LayerData:
     outline_pt: float
     gamma: float
     table: threshold.ThresholdTable
+    family: int
 
 
 def layers(illustration: Illustration) -> list[LayerData]:
@@ -54,11 +55,22 @@ def layers(illustration: Illustration) -> list[LayerData]:
                 f"layer {number}: {w} x {h} samples; an illustration that draws itself may have "
                 f"{MOST_SAMPLES} x {MOST_SAMPLES} a layer (penink reduce makes them fewer)"
             )
-        out.append(_layer(layer, w, h, number))
+        out.append(_layer(layer, w, h, number, family(illustration, number - 1)))
     return out
 
 
-def _layer(layer: Layer, w: int, h: int, number: int) -> LayerData:
+def family(illustration: Illustration, i: int) -> int:
+    """The first layer with layer i's texture and pen: their strokes lie in the same places."""
+    mine = illustration.layers[i]
+
+    def alike(layer: Layer) -> bool:
+        named = layer.texture_name is not None and layer.texture_name == mine.texture_name
+        return (named or layer.texture is mine.texture) and layer.pen_pt == mine.pen_pt
+
+    return next(k for k, layer in enumerate(illustration.layers) if alike(layer))
+
+
+def _layer(layer: Layer, w: int, h: int, number: int, family: int) -> LayerData:
     chains: list[bytes] = []
     outlined = 0
     vertices, ends = np.zeros((0, 2), np.int64), np.zeros((0, 2), np.int64)
@@ -68,22 +80,16 @@ def _layer(layer: Layer, w: int, h: int, number: int) -> LayerData:
             raise LimitError(
                 f"layer {number}: {len(ends)} edges; an illustration that draws itself may have {MOST_EDGES} a layer"
             )
-        found = trails(ends, len(vertices))
-        pixel = np.array([layer.edges.width / w, layer.edges.height / h]) / PARTS
-        around = _around(layer, vertices, ends, w, h)
-        chosen = [
-            bool(around[trail[1]].all()) and _is_outlined(trail, vertices * pixel, strength, layer.outline)
-            for trail in found
-        ]
-        outlined = sum(chosen)
-        found = [t for t, c in zip(found, chosen, strict=True) if c] + [
-            t for t, c in zip(found, chosen, strict=True) if not c
-        ]
-        chains = [_chain_bytes(vertices[trail], closed=False) for trail, _ in found]
+        drawn = _outlined(layer, vertices, ends, strength, w, h)
+        outlined = len(drawn)
+        rest = np.setdiff1d(np.arange(len(ends)), [e for run in drawn for e in run.edges])
+        chains = [_chain_bytes(vertices[run.trail], _pressure(run, layer)) for run in drawn]
+        chains += [_chain_bytes(vertices[trail]) for trail, _ in trails(vertices, ends[rest])]
     return LayerData(
         w, h, layer.levels, samples_bytes(ink_levels(layer), layer.levels), b"".join(chains),
         len(chains), outlined, len(np.unique(ends)), len(ends),
         layer.outline.pen_pt if layer.outline else 0.0, layer.gamma, threshold.table(layer.texture, layer.pen_pt),
+        family,
     )  # fmt: skip
 
 
@@ -117,15 +123,27 @@ def _within_the_frame(vertices: Ints, ends: Ints, strength: Floats | None, w: in
     return EdgeList(across, down, inside, ends, strength)
 
 
-def _around(layer: Layer, vertices: Ints, ends: Ints, w: int, h: int) -> npt.NDArray[np.bool_]:
-    """Which edges (m,) are around the regions that the layer's outline choice names: all, where it names none."""
-    if layer.outline is None or not layer.outline.regions or layer.edges is None:
-        return np.ones(len(ends), bool)
-    from penink_cli.arrangement import regions
+def _outlined(layer: Layer, vertices: Ints, ends: Ints, strength: Floats | None, w: int, h: int) -> list[Run]:
+    """What the layer's outline choice says is outlined of its edges on the lattice, the most telling first."""
+    if layer.outline is None or layer.edges is None:
+        return []
+    around = None
+    if layer.outline.regions:
+        from penink_cli.arrangement import regions
 
-    edges = _within_the_frame(vertices, ends, None, w, h)
-    points = np.array(layer.outline.regions, np.float64) / (layer.edges.width, layer.edges.height)
-    return regions.edges_around(edges, points * (edges.width, edges.height))
+        edges = _within_the_frame(vertices, ends, None, w, h)
+        points = np.array(layer.outline.regions, np.float64) / (layer.edges.width, layer.edges.height)
+        around = regions.edges_around(edges, points * (edges.width, edges.height))
+    # in the edge list's pixels, which the choice is in
+    pixel = np.array([layer.edges.width / w, layer.edges.height / h]) / PARTS
+    at = (vertices + 0.5) * pixel
+    return runs(EdgeList(layer.edges.width, layer.edges.height, at, ends, strength), layer.outline, around)
+
+
+def _pressure(run: Run, layer: Layer) -> int:
+    """The pen's, in 255ths, 0 for a pen that does not swell."""
+    even = layer.outline is not None and layer.outline.even
+    return 0 if even else math.floor(255 * run.pressure + 0.5)
 
 
 def samples_bytes(ink: Ints, levels: int) -> bytes:
@@ -142,53 +160,18 @@ def samples_bytes(ink: Ints, levels: int) -> bytes:
     return ((ink - median) % levels).astype(np.uint8).tobytes()
 
 
-def _chain_bytes(at: Ints, closed: bool) -> bytes:
-    """A chain's vertices (n, 2): number of edges, the first vertex, steps."""
+def _chain_bytes(at: Ints, pressure: int | None = None) -> bytes:
+    """A chain's vertices (n, 2): number of edges, of outlines the pressure, the first vertex, steps."""
     at = at + 1
-    out = [len(at) - 1, *at[0].tolist()]
-    parts = [b"".join(v.to_bytes(2, "big") for v in out)]
+    x, y = at[0].tolist()
+    parts = [(len(at) - 1).to_bytes(2, "big"), b"" if pressure is None else bytes([pressure])]
+    parts += [v.to_bytes(2, "big") for v in (x, y)]
     for (dx, dy), (x, y) in zip(np.diff(at, axis=0).tolist(), at[1:].tolist(), strict=True):
         if -128 <= dx <= 127 and -128 <= dy <= 127:
             parts.append(bytes([dx + 128, dy + 128]))
         else:
             parts.append(bytes([128, 128]) + x.to_bytes(2, "big") + y.to_bytes(2, "big"))
     return b"".join(parts)
-
-
-def trails(ends: Ints, vertices: int) -> list[Trail]:
-    """The edges as chains, each as its vertices and its edges: from end or junction to the next, then the rings."""
-    around: list[list[tuple[int, int]]] = [[] for _ in range(vertices)]
-    for e, (a, b) in enumerate(ends.tolist()):
-        around[a].append((b, e))
-        around[b].append((a, e))
-    used = [False] * len(ends)
-    out = []
-    knots = [v for v in range(vertices) if len(around[v]) not in (0, 2)]
-    for start in itertools.chain(knots, range(vertices)):
-        for first in around[start]:
-            if used[first[1]]:
-                continue
-            chain, along = [start], []
-            step: tuple[int, int] | None = first
-            while step is not None:
-                used[step[1]] = True
-                chain.append(step[0])
-                along.append(step[1])
-                onward = around[step[0]]
-                step = next((s for s in onward if not used[s[1]]), None) if len(onward) == 2 else None
-            out.append((chain, along))
-    return out
-
-
-def _is_outlined(trail: Trail, pixels: Floats, strength: Floats | None, choice: OutlineChoice | None) -> bool:
-    if choice is None:
-        return False
-    lengths = np.sqrt((np.diff(pixels[trail[0]], axis=0) ** 2).sum(axis=1))
-    if lengths.sum() < choice.min_length:
-        return False
-    if strength is None:
-        return True
-    return bool((strength[trail[1]] * lengths).sum() >= choice.min_strength * lengths.sum())
 
 
 def is_sent(screen: threshold.Screen) -> bool:

@@ -5,7 +5,6 @@ Nothing is fetched; it works from a local file with the network off. The program
 
 from __future__ import annotations
 
-import base64
 import html
 import json
 from typing import Any
@@ -15,7 +14,7 @@ from penink_cli.selfdrawing import packer
 from penink_cli.selfdrawing.data import LayerData, is_sent, layers, tile_bytes
 from penink_cli.textures.threshold import Screen
 
-SOURCES = ("unpack.js", "reconstruct.js", "drawing.js", "data.js", "page.js")
+SOURCES = ("unpack.js", "reconstruct.js", "drawing.js", "outline.js", "data.js", "raster.js", "page.js")
 
 
 def write(illustration: Illustration, title: str, readable: bool = False) -> bytes:
@@ -43,7 +42,8 @@ def write(illustration: Illustration, title: str, readable: bool = False) -> byt
 
 
 def _quoted(data: bytes) -> str:
-    return '"' + base64.b64encode(packer.deflate(data)).decode("ascii") + '"'
+    packed = packer.deflate(data)
+    return f'"{packer.letters(packed)}",{len(packed)}'
 
 
 def _layers(parts: list[LayerData]) -> str:
@@ -59,6 +59,7 @@ def _description(layer: LayerData) -> dict[str, Any]:
         "outlined": layer.outlined,
         "outlinePen": layer.outline_pt,
         "gamma": layer.gamma,
+        "family": layer.family,
         "pen": round(layer.table.pen_pt, 4),
         "magnification": round(layer.table.magnification, 4),
         "screens": [_screen(s, layer.table.whole) for s in layer.table.screens],

@@ -7,6 +7,8 @@ import re
 import zlib
 from importlib import resources
 
+import numpy as np
+
 _PS_TOKENS = re.compile(r"%[^\n]*|\((?:[^()\\]|\\.)*\)|[{}\[\]]|/?[^\s{}\[\]()%/]+")
 
 
@@ -75,6 +77,19 @@ def ascii85(data: bytes) -> bytes:
     text = base64.a85encode(data)
     lines = [text[i : i + 79] for i in range(0, len(text), 79)]
     return b"\n".join(b" " + line if line.startswith(b"%") else line for line in lines) + b"\n~>\n"
+
+
+def letters(data: bytes) -> str:
+    """Five letters for each four bytes, the last filled up with zeros, that HTML and JavaScript leave as they are.
+
+    They are the 85 from ( on, but } for < and ~ for the backslash. Base 64 takes 7 % more.
+
+    >>> letters(bytes([0, 0, 0, 1]))
+    '(((()'
+    """
+    words = np.frombuffer(data + bytes(-len(data) % 4), ">u4").astype(np.int64)
+    digits = words[:, None] // 85 ** np.arange(4, -1, -1) % 85 + 40
+    return digits.astype(np.uint8).tobytes().decode("ascii").replace("<", "}").replace("\\", "~")
 
 
 _JS_TOKENS = re.compile(r"//[^\n]*|\"(?:[^\"\\\n]|\\.)*\"|`(?:[^`\\]|\\.)*`|[ \t]+|\n\s*|[^\s\"`/]+|/")

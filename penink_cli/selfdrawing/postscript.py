@@ -34,20 +34,21 @@ def write(illustration: Illustration, packing: str = "flate") -> bytes:
     tail = "end restore\nshowpage\n%%Trailer\n%%EOF\n"
     program = "\n".join(packer.source(name) for name in SOURCES)
     page = f"{_number(width)} {_number(height)} Page\n"
+    picture = f"[ {' '.join(f'Layer{i}' for i in range(len(parts)))} ] Picture\n"
     if packing == "readable":
         body = program + page
-        for layer in parts:
+        for i, layer in enumerate(parts):
             data = _bytes(layer)
-            lines = [data[i : i + 40].hex() for i in range(0, len(data), 40)]
-            read = _read(layer)
+            lines = [data[k : k + 40].hex() for k in range(0, len(data), 40)]
             source = "/Source currentfile /ASCIIHexDecode filter def"
-            body += f"save\n/Data {{ {source} {read} Source flushfile }} bind def\nData\n"
-            body += "\n".join(lines) + "\n>\n" + _draw(layer) + "restore\n"
-        return (head + body + tail).encode("ascii")
+            body += f"{_opened(i)}/Data {{ {source} {_read(layer)} Source flushfile }} bind def\nData\n"
+            body += "\n".join(lines) + "\n>\n" + _closed(layer)
+        return (head + body + picture + tail).encode("ascii")
     packed = (packer.strip_postscript(program) + "\n" + page).encode("ascii")
-    for layer in parts:
-        packed += f"save\n/Source currentfile def/Data{{{_read(layer)}}}bind def Data\n".encode("ascii")
-        packed += _bytes(layer) + ("\n" + _draw(layer) + "restore\n").encode("ascii")
+    for i, layer in enumerate(parts):
+        packed += f"{_opened(i)}/Source currentfile def/Data{{{_read(layer)}}}bind def Data\n".encode("ascii")
+        packed += _bytes(layer) + ("\n" + _closed(layer)).encode("ascii")
+    packed += picture.encode("ascii")
     data = packer.deflate(packed) if packing == "flate" else packer.lzw(packed)
     name = "FlateDecode" if packing == "flate" else "LZWDecode"
     body = f"{{ currentfile /ASCII85Decode filter dup /{name} filter cvx exec flushfile }} exec\n"
@@ -66,12 +67,16 @@ def _read(layer: LayerData) -> str:
     ) + " ".join(_tile(i, s, layer.table.whole) for i, s in enumerate(layer.table.screens) if is_sent(s))
 
 
-def _draw(layer: LayerData) -> str:
+def _opened(number: int) -> str:
+    return f"/Layer{number} 300 dict def Layer{number} begin\n"
+
+
+def _closed(layer: LayerData) -> str:
     table = layer.table
     screens = " ".join(_screen(i, s) for i, s in enumerate(table.screens))
     return (
-        f"/OutlinePen {_number(layer.outline_pt)} def /Gamma {_number(layer.gamma)} def\n"
-        f"{_number(table.pen_pt)} {_number(table.magnification)} [ {screens} ] Layer\n"
+        f"/OutlinePen {_number(layer.outline_pt)} def /Gamma {_number(layer.gamma)} def /Family {layer.family} def\n"
+        f"{_number(table.pen_pt)} {_number(table.magnification)} [ {screens} ] Layer\nend\n"
     )
 
 

@@ -53,8 +53,8 @@ def test_zoom_keeps_width_and_density_of_strokes(page):
 def test_the_same_strokes_as_on_paper(page):
     runs = page.evaluate("""(() => {
       let length = 0;
-      draw(layers[0], 108, 108, [0, 0, 108, 108], (xs, ys) => {
-        for (let i = 1; i < xs.length; i++) length += Math.hypot(xs[i] - xs[i - 1], ys[i] - ys[i - 1]);
+      draw(layers, 108, 108, [0, 0, 108, 108], (layer, screen, count) => {
+        for (let i = 1; i < count; i++) length += Math.hypot(alongX[i] - alongX[i - 1], alongY[i] - alongY[i - 1]);
       }, () => 0);
       return length;
     })()""")

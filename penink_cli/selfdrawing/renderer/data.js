@@ -31,6 +31,7 @@ class Reader {
     };
     for (let c = 0; c < chains; c++) {
       const count = this.word();
+      const pressure = c < outlined ? this.byte() : 0;
       let x = this.word(), y = this.word();
       const chain = [vertex(x, y)];
       for (let e = 0; e < count; e++) {
@@ -39,7 +40,7 @@ class Reader {
         chain.push(vertex(x, y));
         ends.push(chain.slice(-2));
       }
-      if (c < outlined) outlines.push(chain.map(v => [xs[v], ys[v]]));
+      if (c < outlined) outlines.push({pressure, xs: chain.map(v => xs[v]), ys: chain.map(v => ys[v])});
     }
     return {xs, ys, ends, outlines};
   }
@@ -51,10 +52,9 @@ class Reader {
       const limit = this.byte(), u0 = this.word() / 4, v0 = this.word() / 4;
       const [x1, y1, x2, y2, x3, y3] = Array.from({length: 6}, () => (this.byte() - 128) / 4);
       const axis = (first, a, b, c) => [first, 3 * a, 3 * (b - 2 * a), c - 3 * a - 3 * (b - 2 * a)];
-      strokes.push({long: Math.hypot(x3, y3), u: axis(u0, x1, x2, x3), v: axis(v0, y1, y2, y3), limit, line: -1,
-        weight: freshInk(limit / 255, covers, fresh)});
+      strokes.push(Math.hypot(x3, y3), ...axis(u0, x1, x2, x3), ...axis(v0, y1, y2, y3), limit, freshInk(limit / 255, covers, fresh), -1);
     }
-    return {angle: 0, strokes, tile, whole, wave: 0, turn: 0, widens};
+    return {angle: 0, strokes: Float64Array.from(strokes), tile, whole, wave: 0, turn: 0, widens};
   }
 }
 
@@ -69,6 +69,6 @@ function readLayers(description, bytes) {
     const curve = d.gamma === 1 ? null :
       Uint8Array.from({length: 256}, (_, t) => Math.floor(255 * (1 - (1 - t / 255) ** d.gamma) + 0.5));
     return {picture: new Picture(d.w, d.h, ink, xs, ys, ends), screens, outlines, curve,
-      pen: d.pen, magnification: d.magnification, outlinePen: d.outlinePen / d.magnification};
+      family: d.family, pen: d.pen, magnification: d.magnification, outlinePen: d.outlinePen / d.magnification};
   });
 }

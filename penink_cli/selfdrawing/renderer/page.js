@@ -5,7 +5,7 @@ const PRINTER = 72 / 600;                                     // what a printer 
 const MOST = 64;                                              // greatest magnification
 const canvas = document.querySelector("canvas"), status = document.querySelector("output");
 const view = {zoom: 1, x: 0, y: 0};                           // x, y: of the picture's corner, CSS pixels
-let layers = [], size = [1, 1], shown = null, due = 0, painted = {ms: 0, strokes: 0};
+let layers = [], size = [1, 1], image = null, shown = null, due = 0, painted = {ms: 0, strokes: 0};
 
 // How large the picture is at zoom 1: it fits the window.
 const fitted = () => Math.min(canvas.clientWidth / size[0], canvas.clientHeight / size[1]) * 0.96;
@@ -38,41 +38,19 @@ function moved() {
 }
 
 function repaint() {
-  const began = performance.now(), ratio = window.devicePixelRatio || 1;
-  canvas.width = canvas.clientWidth * ratio;
-  canvas.height = canvas.clientHeight * ratio;
-  canvas.style.transform = "";
+  const began = performance.now(), ratio = window.devicePixelRatio || 1, wide = Math.round(canvas.clientWidth * ratio), tall = Math.round(canvas.clientHeight * ratio);
   settle();
-  const context = canvas.getContext("2d"), wide = size[0] * scale(), tall = size[1] * scale();
+  const per = UNIT * ratio, x = view.x * ratio, y = view.y * ratio, right = x + size[0] * scale() * ratio, bottom = y + size[1] * scale() * ratio;
+  const raster = new Raster(wide, tall, ...[x, y, right, bottom].map(Math.round));
   let strokes = 0;
-  context.fillStyle = "#fff";
-  context.setTransform(ratio, 0, 0, ratio, view.x * ratio, view.y * ratio);
-  context.fillRect(0, 0, wide, tall);
-  context.beginPath();
-  context.rect(0, 0, wide, tall);
-  context.clip();
-  context.lineCap = context.lineJoin = "round";
-  for (const layer of layers) {
-    const unit = UNIT * layer.magnification, unclipped = [-view.x, -view.y, canvas.clientWidth - view.x, canvas.clientHeight - view.y];
-    context.setTransform(ratio * unit, 0, 0, ratio * unit, view.x * ratio, view.y * ratio);
-    context.lineWidth = layer.pen;
-    // each stroke by itself: in batches the browser takes longer, for it tells overlaps within a path
-    draw(layer, wide / unit, tall / unit, unclipped.map(x => x / unit), (xs, ys) => {
-      context.beginPath();
-      context.moveTo(xs[0], ys[0]);
-      for (let i = 1; i < xs.length; i++) context.lineTo(xs[i], ys[i]);
-      context.stroke();
-      strokes++;
-    }, (xs, ys, closed) => {
-      context.beginPath();
-      context.lineWidth = layer.outlinePen;
-      const lean = leans(xs, ys, closed);
-      context.moveTo(xs[0], ys[0]);
-      for (let i = 1; i < xs.length; i++)
-        context.bezierCurveTo(xs[i - 1] + lean[i - 1][0], ys[i - 1] + lean[i - 1][1], xs[i] - lean[i][0], ys[i] - lean[i][1], xs[i], ys[i]);
-      context.stroke();
-    });
-  }
+  draw(layers, size[0] * scale() / UNIT, size[1] * scale() / UNIT, [-x / per, -y / per, (wide - x) / per, (tall - y) / per], (layer, screen, count) => {
+    raster.stroke(alongX, alongY, count, per * layer.magnification, x, y, layer.pen * layer.magnification * per / 2, false);
+    strokes++;
+  }, (layer, xs, ys, pen) => raster.stroke(xs, ys, xs.length, per * layer.magnification, x, y, pen * layer.magnification * per / 2, true));
+  if (!image || image.width !== wide || image.height !== tall) image = new ImageData(canvas.width = wide, canvas.height = tall);
+  raster.show(image);
+  canvas.style.transform = "";
+  canvas.getContext("2d").putImageData(image, 0, 0);
   shown = {x: view.x, y: view.y, scale: scale()};
   painted = {ms: performance.now() - began, strokes};
   status.value = `${view.zoom.toFixed(view.zoom < 10 ? 1 : 0)}×`;
@@ -80,24 +58,20 @@ function repaint() {
 
 // A window (points) of the picture, drawn at so many points wide, as an SVG document for a device whose pixels are `gain` points.
 function svg(width, window, gain) {
-  const height = width * size[1] / size[0], [x0, y0, x1, y1] = window, fixed = x => x.toFixed(2);
-  const parts = [`<svg xmlns="http://www.w3.org/2000/svg" width="${fixed(x1 - x0)}pt" height="${fixed(y1 - y0)}pt" viewBox="${window.map(fixed).slice(0, 2).join(" ")} ${fixed(x1 - x0)} ${fixed(y1 - y0)}">`,
-    `<clipPath id="frame"><rect width="${fixed(width)}" height="${fixed(height)}"/></clipPath><g clip-path="url(#frame)" fill="none" stroke="#000" stroke-linecap="round" stroke-linejoin="round">`];
-  for (const layer of layers) {
-    const unit = layer.magnification, hatching = new Map(), outlines = [];
-    draw(layer, width / unit, height / unit, window.map(x => x / unit), (xs, ys, screen) => {
-      if (!hatching.has(screen)) hatching.set(screen, []);
-      hatching.get(screen).push("M" + xs.map((x, i) => fixed(x * unit) + " " + fixed(ys[i] * unit)).join(" "));
-    }, (xs, ys, closed) => {
-      const lean = leans(xs, ys, closed), p = (x, y) => fixed(x * unit) + " " + fixed(y * unit);
-      outlines.push("M" + p(xs[0], ys[0]) + xs.slice(1).map((x, i) => "C" + [
-        p(xs[i] + lean[i][0], ys[i] + lean[i][1]), p(x - lean[i + 1][0], ys[i + 1] - lean[i + 1][1]), p(x, ys[i + 1])].join(" ")).join(""));
-    });
-    const add = (paths, pen) => parts.push(`<path stroke-width="${fixed(Math.max(0.1, pen))}" d="${paths.join("")}"/>`);
-    for (const [screen, paths] of hatching) add(paths, layer.pen * unit - gain * screen.widens);
-    if (outlines.length) add(outlines, layer.outlinePen * unit - 1.27 * gain);
-  }
-  return parts.join("\n") + "</g></svg>\n";
+  const height = width * size[1] / size[0], [x0, y0, x1, y1] = window, fixed = x => x.toFixed(2), paths = new Map();
+  const add = (layer, pen, xs, ys, count) => {
+    const wide = fixed(Math.max(0.1, pen));
+    let d = "M";
+    for (let i = 0; i < count; i++) d += (i ? " " : "") + fixed(xs[i] * layer.magnification) + " " + fixed(ys[i] * layer.magnification);
+    if (!paths.has(wide)) paths.set(wide, []);
+    paths.get(wide).push(d);
+  };
+  draw(layers, width, height, window,
+    (layer, screen, count) => add(layer, layer.pen * layer.magnification - gain * screen.widens, alongX, alongY, count),
+    (layer, xs, ys, pen) => add(layer, pen * layer.magnification - 1.27 * gain, xs, ys, xs.length));
+  return [`<svg xmlns="http://www.w3.org/2000/svg" width="${fixed(x1 - x0)}pt" height="${fixed(y1 - y0)}pt" viewBox="${fixed(x0)} ${fixed(y0)} ${fixed(x1 - x0)} ${fixed(y1 - y0)}">`,
+    `<clipPath id="frame"><rect width="${fixed(width)}" height="${fixed(height)}"/></clipPath><g clip-path="url(#frame)" fill="none" stroke="#000" stroke-linecap="round" stroke-linejoin="round">`,
+    ...Array.from(paths, ([wide, list]) => `<path stroke-width="${wide}" d="${list.join("")}"/>`)].join("\n") + "</g></svg>\n";
 }
 
 // What is seen, in points: a unit of the screen's texture is a point.

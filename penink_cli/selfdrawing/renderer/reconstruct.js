@@ -1,10 +1,11 @@
 // reconstruct.js - grey samples and discontinuity edges to tone on a grid of any size (section 2 of the paper).
 // The same steps as reconstruct.ps, which says why; only a window of the grid is filled.
 
-const TILE = 96, MOST_TILES = 400;                            // cells; tiles that are kept
+const TILE = 64, MOST_TILES = 900, MOST_SQUARES = 6000;                            // cells; tiles that are kept
 const NUDGE = 1 / 1024, REACH = 2 * Math.SQRT2 + 1;
 const smooth = t => t <= 0 ? 0 : t >= 1 ? 1 : t * t * (3 - 2 * t);
 const clamp = (x, low, high) => x < low ? low : x > high ? high : x;
+const far = (x, y) => Math.sqrt(x * x + y * y);             // Math.hypot takes ten times as long
 const byte = x => clamp(Math.floor(x + 0.5), 0, 255);
 
 function cubic(f) {
@@ -63,6 +64,8 @@ class Picture {
     this.seen = new Int32Array(Math.max(this.count, this.nodes.length));
     this.stamp = 0;
     this.tiles = new Map();
+    this.squares = new Map();
+    this.queries = 0;
   }
 
   at(i, j) { return (j + 1) * this.columns + i + 1; }
@@ -85,15 +88,37 @@ class Picture {
     return (K * E[k + 1] - L * E[k] + M > 0) !== (K * E[k + 3] - L * E[k + 2] + M > 0);
   }
   blocked(list, x, y, u, v) {
-    for (let i = 0; i < list.length; i++) if (this.between(list[i], x, y, u, v)) return true;
+    for (const e of list) if (this.between(e, x, y, u, v)) return true;
     return false;
+  }
+
+  // What edges hide from (u,v) in the square around (cx,cy): null, true for all of it, or ten numbers an edge: (x,y) is
+  // hidden where three linear functions, each constant, x and y, exceed the tenth, reach 0 and exceed 0.
+  shadow(list, u, v, cx, cy) {
+    const E = this.edges, out = [];
+    for (const e of list) {
+      const o = 7 * e, ax = E[o], ay = E[o + 1], bx = E[o + 2], by = E[o + 3], dx = E[o + 4], dy = E[o + 5], c = E[o + 6];
+      const q = dx * v - dy * u + c, sign = q > 0 || (q === 0 && dy < 0) ? 1 : -1;
+      const z = -sign * (dx * cy - dy * cx + c), half = (Math.abs(dx) + Math.abs(dy)) / 2;
+      if (z < -half) continue;
+      const A = sign * ((ax - u) * (cy - v) - (ay - v) * (cx - u)), a = (Math.abs(ax - u) + Math.abs(ay - v)) / 2;
+      if (A <= -a) continue;
+      const B = -sign * ((bx - u) * (cy - v) - (by - v) * (cx - u)), b = (Math.abs(bx - u) + Math.abs(by - v)) / 2;
+      if (B <= -b) continue;
+      if (z > half && A >= a && B >= b) return true;
+      // on the edge's line a query counts as above it where dy < 0; in line with a vertex, as left of the vertex
+      const sideA = [sign * ((ay - v) * u - (ax - u) * v), sign * (v - ay), sign * (ax - u)];
+      const sideB = [sign * ((bx - u) * v - (by - v) * u), sign * (by - v), sign * (u - bx)];
+      out.push(-sign * c, sign * dy, -sign * dx, ...(sign > 0 ? sideB.concat(sideA) : sideA.concat(sideB)), (sign > 0) === dy < 0 ? 0 : -1e-300);
+    }
+    return out.length ? Float64Array.from(out) : null;
   }
 
   nodesSeen(x, y) {
     const i = Math.floor(x), j = Math.floor(y), walls = this.near(this.edgesIn, i, j, 4), out = [];
     for (const t of this.near(this.nodesIn, i, j, 4)) {
-      const [u, v] = this.nodes[t], far = Math.hypot(u - x, v - y);
-      if (far < REACH && !this.blocked(walls, x, y, u, v)) out.push([t, far]);
+      const [u, v] = this.nodes[t], d = far(u - x, v - y);
+      if (d < REACH && !this.blocked(walls, x, y, u, v)) out.push([t, d]);
     }
     return out;
   }
@@ -103,8 +128,8 @@ class Picture {
     if (!this.pathsOf[key]) {
       const reached = new Map(this.nodesSeen(i, j));
       for (const [t] of reached) {                            // what is added meanwhile is visited too
-        for (const [s, far] of this.arcsOf[t] ||= this.nodesSeen(...this.nodes[t])) {
-          const d = reached.get(t) + far;
+        for (const [s, more] of this.arcsOf[t] ||= this.nodesSeen(...this.nodes[t])) {
+          const d = reached.get(t) + more;
           if (d < REACH && d < (reached.get(s) ?? 9)) { reached.delete(s); reached.set(s, d); }
         }
       }
@@ -132,118 +157,152 @@ class Picture {
 
   // Tone of the cells x0 .. x1, y0 .. y1 of a grid of n x m that fills the frame.
   reconstruct(n, m, x0, y0, x1, y1) {
-    const {w, h, ink} = this, wide = x1 - x0, tone = new Uint8Array(wide * (y1 - y0));
-    const axis = (from, upto, cells, samples) => Array.from({length: upto - from}, (_, k) => {
-      const x = (from + k + 0.5) * samples / cells - 0.5, i = Math.floor(x);
-      return {i, f: x - i, k: cubic(x - i)};
-    });
-    const X = axis(x0, x1, n, w), Y = axis(y0, y1, m, h), rows = new Map();
+    const {w, h, ink} = this, wide = x1 - x0, tall = y1 - y0, tone = new Uint8Array(wide * tall), plain = new Float64Array(wide * tall);
+    const axis = (from, many, cells, samples) => {            // the square each cell is in, where there, cubic weights
+      const at = {i: new Int32Array(many), f: new Float64Array(many), k: new Float64Array(4 * many)};
+      for (let k = 0; k < many; k++) {
+        const x = (from + k + 0.5) * samples / cells - 0.5;
+        at.i[k] = Math.floor(x);
+        at.f[k] = x - at.i[k];
+        at.k.set(cubic(at.f[k]), 4 * k);
+      }
+      return at;
+    };
+    const X = axis(x0, wide, n, w), Y = axis(y0, tall, m, h), rows = [];
     const along = j => {
       j = clamp(j, 0, h - 1);
-      if (!rows.has(j)) {
-        const row = new Float64Array(wide), s = i => ink[j * w + clamp(i, 0, w - 1)];
-        X.forEach(({i, k}, p) => { row[p] = s(i - 1) * k[0] + s(i) * k[1] + s(i + 1) * k[2] + s(i + 2) * k[3]; });
-        rows.set(j, row);
+      if (!rows[j]) {
+        const row = rows[j] = new Float64Array(wide), s = i => ink[j * w + clamp(i, 0, w - 1)];
+        for (let p = 0; p < wide; p++) {
+          const i = X.i[p], k = 4 * p;
+          row[p] = s(i - 1) * X.k[k] + s(i) * X.k[k + 1] + s(i + 1) * X.k[k + 2] + s(i + 2) * X.k[k + 3];
+        }
       }
-      return rows.get(j);
+      return rows[j];
     };
-    Y.forEach(({i, k}, q) => {
-      const [a, b, c, d] = [-1, 0, 1, 2].map(o => along(i + o)), [ka, kb, kc, kd] = k;
-      for (let p = 0; p < wide; p++) tone[q * wide + p] = byte(a[p] * ka + b[p] * kb + c[p] * kc + d[p] * kd);
-    });
+    for (let q = 0; q < tall; q++) {
+      const [a, b, c, d] = [-1, 0, 1, 2].map(o => along(Y.i[q] + o)), [ka, kb, kc, kd] = Y.k.subarray(4 * q, 4 * q + 4);
+      for (let p = 0; p < wide; p++) tone[q * wide + p] = byte(plain[q * wide + p] = a[p] * ka + b[p] * kb + c[p] * kc + d[p] * kd);
+    }
     if (!this.count) return tone;
-    for (let q = 0; q < Y.length;) {
-      let last = q;
-      while (last < Y.length && Y[last].i === Y[q].i) last++;
-      for (let p = 0; p < wide;) {
-        let end = p;
-        while (end < wide && X[end].i === X[p].i) end++;
-        if (this.dirty[this.at(X[p].i, Y[q].i)]) this.square(X, Y, p, end, q, last, tone, wide);
-        p = end;
+    for (let q = 0, last; q < tall; q = last) {
+      for (last = q; last < tall && Y.i[last] === Y.i[q];) last++;
+      for (let p = 0, end; p < wide; p = end) {
+        for (end = p; end < wide && X.i[end] === X.i[p];) end++;
+        if (this.dirty[this.at(X.i[p], Y.i[q])]) this.square(X, Y, p, end, q, last, tone, wide, plain);
       }
-      q = last;
     }
     return tone;
   }
 
+  // The samples' values around square (I, J), and of those that edges may hide there the shadows and where paths to them
+  // may bend; null where nothing is hidden. Kept: that takes as long as a screenful of cells.
+  hidden(I, J) {
+    const {w, h, ink} = this, cx = I + 0.5, cy = J + 0.5, taps = [], key = this.at(I, J);
+    if (this.squares.has(key)) return this.squares.get(key);
+    const walls = this.near(this.edgesIn, I, J, 1), value = new Float64Array(16), nodes = new Map();
+    let around = null;
+    for (let k = 0; k < 16; k++) {
+      const u = clamp(I - 1 + (k & 3), 0, w - 1), v = clamp(J - 1 + (k >> 2), 0, h - 1);
+      value[k] = ink[v * w + u];
+      const shadow = this.shadow(walls, u, v, cx, cy);
+      if (!shadow) continue;
+      const most = far(u - cx, v - cy) + 2.4143, bends = [];
+      around ||= this.near(this.nodesIn, I, J, 2).length ? this.near(this.edgesIn, I, J, 2) : [];
+      if (around.length) for (const [x, y, way, t] of this.paths(u, v)) if (way + far(x - cx, y - cy) < most) {
+        if (!nodes.has(t)) nodes.set(t, {x, y, hidden: this.shadow(around, x, y, cx, cy), at: -1, seen: false});
+        const node = nodes.get(t);
+        if (node.hidden !== true) bends.push({node, way});
+      }
+      taps.push({k, u, v, shadow, bends});
+    }
+    if (this.squares.size >= MOST_SQUARES) this.squares.clear();
+    this.squares.set(key, taps.length ? {taps, value} : null);
+    return this.squares.get(key);
+  }
+
   // The cells p0 .. p1, q0 .. q1 of one square.
-  square(X, Y, p0, p1, q0, q1, tone, wide) {
-    const {w, h, ink, edges: E} = this, I = X[p0].i, J = Y[q0].i, cx = I + 0.5, cy = J + 0.5;
-    const tx = [], ty = [], shadows = new Array(16).fill(null);
-    for (let k = 0; k < 16; k++) { tx.push(clamp(I - 1 + (k & 3), 0, w - 1)); ty.push(clamp(J - 1 + (k >> 2), 0, h - 1)); }
-    let hidden = false;
-    for (const e of this.near(this.edgesIn, I, J, 1)) {
-      const o = 7 * e, ax = E[o], ay = E[o + 1], bx = E[o + 2], by = E[o + 3], dx = E[o + 4], dy = E[o + 5], c = E[o + 6];
-      const above = z => z > 0 || (z === 0 && dy < 0), z = dx * cy - dy * cx + c;
-      const astride = Math.abs(z) <= (Math.abs(dx) + Math.abs(dy)) / 2;
-      for (let k = 0; k < 16; k++) {
-        const sx = tx[k], sy = ty[k], side = above(dx * sy - dy * sx + c);
-        if (!astride && side === above(z)) continue;
-        const sign = side ? 1 : -1;
-        const A = sign * ((ax - sx) * (cy - sy) - (ay - sy) * (cx - sx)), a = (Math.abs(ax - sx) + Math.abs(ay - sy)) / 2;
-        if (A <= -a) continue;
-        const B = -sign * ((bx - sx) * (cy - sy) - (by - sy) * (cx - sx)), b = (Math.abs(bx - sx) + Math.abs(by - sy)) / 2;
-        if (B <= -b) continue;
-        hidden = true;
-        if (!astride && A >= a && B >= b) shadows[k] = true;
-        else if (shadows[k] !== true) (shadows[k] ||= []).push(e);
+  square(X, Y, p0, p1, q0, q1, tone, wide, plain) {
+    const I = X.i[p0], J = Y.i[q0], found = this.hidden(I, J);
+    if (!found) return;
+    const {taps, value} = found, many = p1 - p0, hidden = new Uint16Array(many * (q1 - q0)), fx = X.f, x0 = I + fx[p0], perX = many > 1 ? (many - 1) / (fx[p1 - 1] - fx[p0]) : 1;
+    // which taps are hidden from which cells: from one stretch of each row by each edge
+    for (const {k, shadow} of taps) {
+      if (shadow === true) for (let c = 0; c < hidden.length; c++) hidden[c] |= 1 << k;
+      else for (let o = 0; o < shadow.length; o += 10) for (let q = q0; q < q1; q++) {
+        const y = J + Y.f[q], row = (q - q0) * many;
+        let from = 0, upto = many - 1;
+        for (let l = o; l < o + 9; l += 3) {
+          const slope = shadow[l + 1], rest = shadow[l] + shadow[l + 2] * y;
+          if (slope > 0) from = Math.max(from, Math.ceil((-rest / slope - x0) * perX) - 1);
+          else if (slope < 0) upto = Math.min(upto, Math.floor((-rest / slope - x0) * perX) + 1);
+          else if (rest < 0) upto = -1;
+        }
+        while (from <= upto && !within(shadow, o, I + fx[p0 + from], y)) from++;
+        while (from <= upto && !within(shadow, o, I + fx[p0 + upto], y)) upto--;
+        for (; from <= upto; from++) hidden[row + from] |= 1 << k;
       }
     }
-    if (!hidden) return;
-    const value = tx.map((x, k) => ink[ty[k] * w + x]), bends = new Array(16).fill(null);
-    let around = [];
-    if (this.near(this.nodesIn, I, J, 2).length) {
-      for (let k = 0; k < 16; k++) if (shadows[k]) {
-        const most = Math.hypot(tx[k] - cx, ty[k] - cy) + 2.4143;
-        const useful = this.paths(tx[k], ty[k]).filter(([x, y, d]) => d + Math.hypot(x - cx, y - cy) < most);
-        if (useful.length) bends[k] = useful;
-      }
-      around = this.near(this.edgesIn, I, J, 2);
-    }
-    const light = new Float64Array(16), seen = new Map();
-    const sums = (kx, ky, all) => {
-      let num = 0, den = 0;
+    const light = new Float64Array(16).fill(1);
+    let num = 0, den = 0;
+    const sums = (kx, ky, x, y, all) => {
+      num = den = 0;
       for (let k = 0; k < 16; k++) {
-        const weight = kx[k & 3] * ky[k >> 2] * (all ? 1 : light[k]);
+        const weight = kx[x + (k & 3)] * ky[y + (k >> 2)] * (all ? 1 : light[k]);
         num += weight * value[k];
         den += weight;
       }
-      return [num, den];
     };
     for (let q = q0; q < q1; q++) for (let p = p0; p < p1; p++) {
-      const x = I + X[p].f, y = J + Y[q].f;
-      let all = true;
-      seen.clear();
-      for (let k = 0; k < 16; k++) {
-        light[k] = 1;
-        const shadow = shadows[k];
-        if (!shadow || (shadow !== true && !this.blocked(shadow, x, y, tx[k], ty[k]))) continue;
+      const away = hidden[(q - q0) * many + p - p0];
+      if (!away) continue;
+      const x = I + fx[p], y = J + Y.f[q], cell = q * wide + p, query = ++this.queries;
+      // most cells keep most of their taps: what the others weigh is taken off the sum of all
+      let lost = 0, lostInk = 0;
+      light.fill(1);
+      for (const {k, u, v, bends} of taps) {
+        if (!(away >> k & 1)) continue;
         let least = 1;
-        if (bends[k]) {
-          const straight = Math.hypot(tx[k] - x, ty[k] - y);
-          for (const bend of bends[k]) {
-            const u = bend[0], v = bend[1], t = bend[3], detour = bend[2] + Math.sqrt((u - x) * (u - x) + (v - y) * (v - y)) - straight;
+        if (bends.length) {
+          const straight = far(u - x, v - y);
+          for (const {node, way} of bends) {
+            const detour = way + far(node.x - x, node.y - y) - straight;
             if (detour >= least) continue;
-            if (!seen.has(t)) seen.set(t, !this.blocked(around, x, y, u, v));
-            if (seen.get(t)) least = detour;
+            if (node.at !== query) { node.at = query; node.seen = !node.hidden || !anywhere(node.hidden, x, y); }
+            if (node.seen) least = detour;
           }
         }
-        light[k] = 1 - smooth(least);
-        all = false;
+        const loss = smooth(least), weight = X.k[4 * p + (k & 3)] * Y.k[4 * q + (k >> 2)] * loss;
+        light[k] = 1 - loss;
+        lost += weight;
+        lostInk += weight * value[k];
       }
-      if (all) continue;
-      let [num, den] = sums(X[p].k, Y[q].k), faith = 1;
+      let faith = 1;
+      num = plain[cell] - lostInk;
+      den = 1 - lost;
       if (den < 0.5) {
-        const share = smooth(den / 0.5), [numS, denS] = sums(spline(X[p].f), spline(Y[q].f));
-        num = share * num + (1 - share) * numS;
-        den = share * den + (1 - share) * denS;
-        faith = smooth(denS * 10000);
+        sums(X.k, Y.k, 4 * p, 4 * q);
+        const share = smooth(den / 0.5), numC = num, denC = den;
+        sums(spline(X.f[p]), spline(Y.f[q]), 0, 0);
+        faith = smooth(den * 10000);
+        num = share * numC + (1 - share) * num;
+        den = share * denC + (1 - share) * den;
       }
       if (faith > 0) {
         let result = num / den;
-        if (faith < 1) { const [N, D] = sums(X[p].k, Y[q].k, true); result = faith * result + (1 - faith) * N / D; }
-        tone[q * wide + p] = byte(result);
+        if (faith < 1) { sums(X.k, Y.k, 4 * p, 4 * q, true); result = faith * result + (1 - faith) * num / den; }
+        tone[cell] = byte(result);
       }
     }
   }
+}
+
+// Is (x,y) in one edge's shadow, whose numbers begin at k; is it in any?
+function within(shadow, k, x, y) {
+  return shadow[k] + shadow[k + 1] * x + shadow[k + 2] * y > shadow[k + 9] &&
+    shadow[k + 3] + shadow[k + 4] * x + shadow[k + 5] * y >= 0 && shadow[k + 6] + shadow[k + 7] * x + shadow[k + 8] * y > 0;
+}
+function anywhere(shadow, x, y) {
+  for (let k = 0; k < shadow.length; k += 10) if (within(shadow, k, x, y)) return true;
+  return false;
 }
