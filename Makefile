@@ -6,6 +6,7 @@
 #   make bench      the measurements     make dist    wheel and source distribution
 #   make check-dist both, installed in an empty environment
 #   make fuzz       every reader against anything (SECONDS=600)
+#   make manual     the man pages and completion, from the help texts
 #   make torture    a thousand runs killed, two hundred photographs
 #   make clean      remove what make made
 #
@@ -19,7 +20,7 @@ INSTALLED := $(VENV)/.installed
 KERNELS   := $(shell sed -n 's/^sources = \["\(.*\)"\]/\1/p' pyproject.toml)
 BENCHES   := $(patsubst tests/benchmarks/%.py,tests.benchmarks.%,$(filter-out %/__init__.py %/_%,$(wildcard tests/benchmarks/*.py)))
 
-.PHONY: all install samples figures test lint bench fuzz torture dist check-dist clean needs needs-test needs-python
+.PHONY: all install samples figures test lint bench fuzz torture manual dist check-dist clean needs needs-test needs-python
 .DELETE_ON_ERROR:
 
 all: samples
@@ -65,6 +66,9 @@ fuzz: $(INSTALLED)
 torture: $(INSTALLED)
 	$(BIN)/python -m tests.faults.kills 1000
 	$(BIN)/python -m tests.faults.batch 200
+
+manual: $(INSTALLED)
+	$(BIN)/python -m penink_cli.manual
 
 bench: $(INSTALLED) needs needs-test
 	@for bench in $(BENCHES); do echo "== $$bench"; PATH="$(BIN):$$PATH" $(BIN)/python -m $$bench || exit 1; done

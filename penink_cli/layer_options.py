@@ -153,10 +153,9 @@ def for_a_pen(
     from penink_cli.travel.order import joined, ordered
 
     result = []
-    with progress(sum(map(len, layers)), "order", quiet) as advance:
+    with progress(2 * sum(map(len, layers)), "order", quiet) as advance:
         for layer in layers:
-            result.append(joined(ordered(layer), join))
-            advance(len(layer))
+            result.append(joined(ordered(layer, advance=advance), join))
     report_travel(layers, result, speed, verbose)
     return result
 

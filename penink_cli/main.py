@@ -107,8 +107,14 @@ def penink() -> None:
 
 
 def _complain(path: str, message: str) -> None:
-    """One line on standard error, whatever the message holds; a closed standard error is no second error."""
-    line = f"{path}: {printable(message)}\n"
+    """One line on standard error, whatever the message holds; a closed standard error is no second error.
+
+    On a terminal the name of the program is red, unless NO_COLOR (no-color.org) is set.
+    """
+    head = f"{path}:"
+    if os.isatty(2) and not os.environ.get("NO_COLOR") and os.environ.get("TERM") != "dumb":
+        head = f"\x1b[1;31m{head}\x1b[0m"
+    line = f"{head} {printable(message)}\n"
     with contextlib.suppress(OSError):
         os.write(2, line.encode("utf-8", "backslashreplace"))
 

@@ -176,6 +176,11 @@ verbose_option = click.option(
 )
 
 
+def reporter(verbose: bool) -> Callable[[str], None]:
+    """What takes lines for --verbose: to standard error, or nowhere."""
+    return (lambda line: click.echo(line, err=True)) if verbose else (lambda line: None)
+
+
 def processors() -> int:
     """Processors this process may run on: the default of --threads."""
     from penink_cli.reconstruction import threads

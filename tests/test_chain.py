@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import shlex
 import subprocess
 import sys
@@ -38,6 +39,18 @@ def camera_ps(tmp_path_factory, photographs):
     run(PIPELINE, folder)
     assert (folder / "out.ps").read_bytes() == first, "the same input must give the same bytes"
     return first
+
+
+def test_verbose_names_options_that_choose_the_same(penink, photographs, tmp_path):
+    photo = photographs("coins")
+    done = penink("detect-edges", "-v", photo, "-o", tmp_path / "e.json")
+    chosen, found = done.stderr.decode().splitlines()
+    again = penink("detect-edges", *chosen.split(": ")[1].split(";")[0].split(), photo)
+    assert again.stdout == (tmp_path / "e.json").read_bytes()
+    assert found == "{} edges, {} vertices".format(*(len(json.loads(again.stdout)[k]) for k in ("edges", "vertices")))
+    done = penink("extract-samples", "-v", "-e", tmp_path / "e.json", photo)
+    options = done.stderr.decode().split(": ")[1].split(";")[0].split()
+    assert penink("extract-samples", "-e", tmp_path / "e.json", *options, photo).stdout == done.stdout
 
 
 def test_the_drawing_has_the_tone_of_the_photograph(camera_ps, photographs, ghostscript):

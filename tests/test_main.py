@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import importlib
+import os
+import subprocess
+import sys
 import tomllib
 
 import click
@@ -10,7 +13,7 @@ import pytest
 
 from penink_cli import errors, options, units
 from penink_cli.main import SUBCOMMANDS
-from tests.conftest import ROOT
+from tests.conftest import ROOT, environment
 
 
 def kernels() -> list[str]:
@@ -74,6 +77,19 @@ def test_a_missing_file_is_one_line_and_status_1(penink):
     assert done.returncode == 1
     assert done.stderr == b"penink detect-edges: no\\nsuch\\x1b.png: No such file or directory\n"
     assert not done.stdout
+
+
+@pytest.mark.parametrize(("environ", "red"), [({}, True), ({"NO_COLOR": "1"}, False), ({"TERM": "dumb"}, False)])
+def test_the_program_s_name_is_red_on_a_terminal_only(environ, red):
+    ours, theirs = os.openpty()
+    before = {"TERM": "xterm", "NO_COLOR": ""}
+    command = [sys.executable, "-m", "penink_cli", "reduce", "--factor", "2", "no-such.pgm"]
+    subprocess.run(command, env=environment(**(before | environ)), stderr=theirs, check=False)
+    os.close(theirs)
+    line = os.read(ours, 1000).decode()
+    os.close(ours)
+    name = "\x1b[1;31mpenink reduce:\x1b[0m" if red else "penink reduce:"
+    assert line == f"{name} no-such.pgm: No such file or directory\r\n"
 
 
 def test_lengths_are_points_and_know_their_units():

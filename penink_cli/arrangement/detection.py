@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -33,6 +34,7 @@ def detect_edges(
     high: float | None = None,
     tolerance: float = TOLERANCE,
     min_length: float = MIN_LENGTH,
+    report: Callable[[str], None] = lambda line: None,
 ) -> EdgeList:
     """Find the discontinuity edges of a photo.
 
@@ -43,6 +45,7 @@ def detect_edges(
         high: grey step that each edge reaches somewhere.
         tolerance: how far segments may stray from the edge found, pixels.
         min_length: shortest chain that is kept, pixels.
+        report: is told, in a line, what was chosen by the photo.
 
     """
     height, width = grey.shape
@@ -53,6 +56,8 @@ def detect_edges(
     unrest = noise / (5.013 * sigma * sigma) / steepness  # the noise of the gradient, as a step
     high = max(0.05, 6 * unrest) if high is None else high
     low = min(max(0.5 * high, 3.5 * unrest) if low is None else low, high)
+    sigma, low, high = float(sigma), float(low), float(high)
+    report(f"chosen: --sigma {sigma} --low {low} --high {high}; noise {255 * noise:.1f} grey levels of 255")
     points = edge_points(grey, sigma, low * steepness)
     chains = _telling(points, link_chains(points), high * steepness, min_length, sigma)
     if not len(chains):

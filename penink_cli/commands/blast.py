@@ -16,7 +16,9 @@ from penink_cli.options import (
     edges_option,
     filter_options,
     processors,
+    reporter,
     threads_option,
+    verbose_option,
 )
 from penink_cli.papers import check_sheet
 from penink_cli.progress import progress
@@ -61,6 +63,7 @@ RULES = ("best", "strict", "threshold")
     help="Strokes that are on the paper already, such as outlines: counted, not written. May be repeated.",
 )
 @threads_option
+@verbose_option
 @filter_options
 def blast(
     file: str | None,
@@ -78,6 +81,7 @@ def blast(
     ink_files: tuple[str, ...],
     threads: int | None,
     quiet: bool,
+    verbose: bool,
     **_: Any,
 ) -> None:
     """Turn grey into pen strokes of the same tone.
@@ -122,6 +126,9 @@ def blast(
             threads=threads or processors(),
             tick=lambda: more(1),
         )
+    if len(strokes):
+        pens = f"{strokes.widths.min():.2f} to {strokes.widths.max():.2f} pt"
+        reporter(verbose)(f"{len(strokes)} strokes of {texture.name}, {pens} wide, on {width_pt:g} x {height_pt:g} pt")
     with writing(output, binary=False) as out:
         writer = strokes_format.Writer(out, width_pt, height_pt, texture=strokes.texture, seed=seed)
         for batch in batches(strokes):

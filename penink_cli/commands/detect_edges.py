@@ -7,7 +7,7 @@ from typing import Any
 import click
 
 from penink_cli.commands.inputs import read_photo
-from penink_cli.options import POSITIVE, Finite, filter_options
+from penink_cli.options import POSITIVE, Finite, filter_options, reporter, verbose_option
 from penink_cli.streams import writing
 
 STEP = Finite(most=1, above=0)
@@ -22,7 +22,10 @@ STEP = Finite(most=1, above=0)
 @click.option("--high", type=STEP, metavar="GREY", help="Grey step an edge reaches somewhere.  [default: by the photo]")
 @click.option("--tolerance", type=POSITIVE, help="How far segments may stray from the edge, pixels.  [default: 0.3]")
 @click.option("--min-length", type=Finite(least=0), help="Shortest edge that is kept, pixels.  [default: 6]")
-def detect_edges(file: str | None, output: str | None, max_pixels: int, quiet: bool, **choices: Any) -> None:
+@verbose_option
+def detect_edges(
+    file: str | None, output: str | None, max_pixels: int, quiet: bool, verbose: bool, **choices: Any
+) -> None:
     """Find the discontinuity edges of a photograph.
 
     The result is an edge list in pixels of the photo. It serves every resolution of the image.
@@ -35,6 +38,8 @@ def detect_edges(file: str | None, output: str | None, max_pixels: int, quiet: b
 
     photo = read_photo(file, max_pixels)
     chosen = {name: value for name, value in choices.items() if value is not None}
-    edges = detection.detect_edges(photo.grey, **chosen)
+    report = reporter(verbose)
+    edges = detection.detect_edges(photo.grey, report=report, **chosen)
+    report(f"{len(edges.edges)} edges, {len(edges.vertices)} vertices")
     with writing(output, binary=False) as out:
         edge_list.write(out, edges)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import click
 
 from penink_cli.commands.inputs import only_one_standard_input, read_edges, read_photo
-from penink_cli.options import Finite, edges_option, filter_options
+from penink_cli.options import Finite, edges_option, filter_options, reporter, verbose_option
 from penink_cli.streams import writing
 
 
@@ -18,6 +18,7 @@ from penink_cli.streams import writing
     help="How far from an edge the photo's blur reaches, pixels.  [default: by the photo]",
 )
 @click.option("--maxval", type=click.IntRange(1, 65535), default=255, help="White of the PGM.  [default: 255]")
+@verbose_option
 def extract_samples(
     file: str | None,
     output: str | None,
@@ -26,6 +27,7 @@ def extract_samples(
     edges_file: str,
     margin: float | None,
     maxval: int,
+    verbose: bool,
 ) -> None:
     """Take grey samples that no edge has contaminated.
 
@@ -43,6 +45,6 @@ def extract_samples(
     edges = read_edges(edges_file, max_pixels)
     assert edges is not None
     photo = read_photo(file, max_pixels)
-    samples = extraction.extract_samples(photo.grey, edges, margin)
+    samples = extraction.extract_samples(photo.grey, edges, margin, reporter(verbose))
     with writing(output) as out:
         pgm.write(out, GreyImage.from_grey(samples, maxval))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import click
 
 from penink_cli.commands.inputs import only_one_standard_input, read_edges, read_grey, read_photo
-from penink_cli.options import SIZE, Finite, edges_option, filter_options, threads_option, verbose_option
+from penink_cli.options import SIZE, Finite, edges_option, filter_options, reporter, threads_option, verbose_option
 from penink_cli.streams import writing
 
 
@@ -87,11 +87,7 @@ def reduce(
         raise ParameterError(
             f"the photo has {photo.shape[1]} x {photo.shape[0]} pixels, fewer than {least[0]} x {least[1]} samples"
         )
-
-    def say(line: str) -> None:
-        if verbose:
-            click.echo(line, err=True)
-
+    say = reporter(verbose)
     if size is None:
         limit = grid.MAX_ERROR if max_error is None else max_error / 255
         chosen = grid.choose_grid(samples.grey, edges, limit, photo=photo, fit=fit, threads=threads, report=say)

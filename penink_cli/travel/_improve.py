@@ -166,12 +166,17 @@ def improve(
     flips: cython.uchar[::1],
     queue: cython.int[::1],
     waiting: cython.uchar[::1],
+    state: cython.longlong[::1],
     budget: cython.longlong,
+    stop: cython.longlong,
 ) -> int:
-    """Shorten a closed tour in place until nothing helps or `budget` steps are done; returns the steps left.
+    """Shorten a closed tour in place until nothing helps, or no more than `stop` of the `budget` of steps is left.
+
+    Returns the steps left. Called again with the same arrays, and what was left, it goes on as if it had not stopped.
 
     points (2n, 2), near (2n, k) indices of ends, nearest first, -1 for none.
-    tour, place, flips (n + 1,): with stroke n closing it. queue, waiting (n + 1,) are room to work in.
+    tour, place, flips (n + 1,): with stroke n closing it. queue, waiting (n + 1,): the strokes to look at, in the order
+    of the tour at first, and 1 for each that is in the queue. state (3,): the queue's head and tail, strokes looked at.
     """
     n: cython.int = tour.shape[0]
     last: cython.int = 2 * (n - 1)
@@ -182,8 +187,9 @@ def improve(
     f: cython.p_uchar = cython.address(flips[0])
     q: cython.p_int = cython.address(queue[0])
     w: cython.p_uchar = cython.address(waiting[0])
-    head: cython.int = 0
-    tail: cython.int = 0
+    head: cython.int = cython.cast(cython.int, state[0])
+    tail: cython.int = cython.cast(cython.int, state[1])
+    looked: cython.longlong = state[2]
     i: cython.int
     s: cython.int
     e: cython.int
@@ -208,16 +214,12 @@ def improve(
     if n < 4:
         return budget
     with cython.nogil:
-        for i in range(n):
-            w[i] = 1
-            q[i] = t[i]
-        while w[q[head]] and budget > 0:
+        while w[q[head]] and budget > stop:
+            looked += 1
             s = q[head]
             w[s] = 0
             head = head + 1 if head + 1 < n else 0
             if s == n - 1:
-                if not w[q[head]]:
-                    break
                 continue
             better = True
             while better and budget > 0:
@@ -337,4 +339,5 @@ def improve(
                             break
                     if better:
                         break
+    state[0], state[1], state[2] = head, tail, looked
     return budget

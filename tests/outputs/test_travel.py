@@ -52,6 +52,14 @@ def test_the_same_strokes_in_another_order(chains, improve):
     assert as_multiset(ordered(strokes, improve)) == as_multiset(strokes)
 
 
+def test_progress_is_told_to_twice_the_number_of_strokes():
+    strokes = crosshatch(2000, 300)
+    for improve in (True, False):
+        told = []
+        ordered(strokes, improve, told.append)
+        assert sum(told) == 2 * len(strokes) and min(told) >= 0 and len(told) > 5
+
+
 @settings(deadline=None)
 @given(st.integers(0, 2**32), st.integers(1, 60))
 def test_always_the_nearest_next(seed, count):
