@@ -13,7 +13,7 @@ look-up a sample.
 A device paints every pixel that a stroke touches. It thereby widens a stroke of direction
 θ by (|cos θ| + |sin θ|) of its pixels; `gain_pt` is the size of that pixel, 0 for none.
 
-This module alone imports the compiled kernel `_ink`.
+This module alone imports the compiled kernels `_ink`, `_due`, `_place` and `_press`.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import numpy.typing as npt
 
-from penink_cli.blasting import _ink
+from penink_cli.blasting import _due, _ink, _place, _press
 from penink_cli.blasting.curves import Polylines
 from penink_cli.model import Floats, Ints
 
@@ -51,12 +51,17 @@ def gaussian(sigma: float, radius: int) -> Floats:
 
 
 def low_pass_kernel(sigma: float) -> tuple[Cells, Floats]:
-    """A Gaussian of σ cells that sums to 1, (2 r + 1, 2 r + 1), and its values by distance in quarters of a cell."""
+    """A Gaussian of σ cells that sums to 1, (2 r + 1, 16), and its values by distance in quarters of a cell.
+
+    Each row ends in zeros, up to where loops of a fixed length (see `_due`) may run; σ is 2.8 at the most.
+    """
     radius = math.ceil(2.5 * sigma)
     g = gaussian(sigma, radius)
     peak = float(g[radius]) ** 2
     profile = [round(peak * math.exp(-0.5 * (k / 4 / sigma) ** 2), 9) for k in range(4 * radius + 1)]
-    return np.ascontiguousarray(np.outer(g, g).astype(np.float32)), np.array(profile)
+    rows = np.zeros((2 * radius + 1, 16), np.float32)
+    rows[:, : 2 * radius + 1] = np.outer(g, g)
+    return rows, np.array(profile)
 
 
 def halve(values: Cells) -> Cells:
@@ -84,10 +89,9 @@ class Sheet:
         self.gain = gain_pt * self.pitch
         self.threads = max(1, threads)
         self.tone: Cells = resample(tone, self.rows, self.columns).astype(np.float32)
-        self.bits = np.zeros((self.rows, self.columns, 8), np.uint8)
-        self.counts = np.zeros((self.rows, self.columns), np.uint8)
+        self.bits = np.zeros((self.rows, (self.columns + 7) // 8, 8), np.uint64)
         self.kernel, self.profile = low_pass_kernel(SIGMA_PT / CELL_PT)
-        self._kept: tuple[npt.NDArray[np.uint8], npt.NDArray[np.uint8]] | None = None
+        self._kept: npt.NDArray[np.uint64] | None = None
         self.residual: Cells = np.zeros((self.rows, self.columns), np.float32)
         self.step = STEP
         #: how much of the kernel about each cell counts
@@ -99,20 +103,18 @@ class Sheet:
 
     def clear(self) -> None:
         """Take all ink away but what is there for good."""
-        if self._kept is None:
-            self.bits[:] = 0
-            self.counts[:] = 0
-        else:
-            self.bits[:], self.counts[:] = self._kept
+        self.bits[:] = 0 if self._kept is None else self._kept
 
     def keep(self) -> None:
         """What is inked by now is there for good."""
-        self._kept = self.bits.copy(), self.counts.copy()
+        self._kept = self.bits.copy()
 
     @property
     def ink(self) -> Cells:
         """Coverage so far (rows, columns), 0 … 1."""
-        return self.counts * np.float32(1 / 64)
+        out = np.empty((self.rows, self.columns), np.float32)
+        _ink.cover(self.bits, out)
+        return out
 
     def low_pass(self, values: Cells) -> Cells:
         """G * values (rows, columns), cut off at strong steps of tone, zero outside the frame."""
@@ -141,7 +143,7 @@ class Sheet:
         edges = [*range(0, len(values), 64), len(values)]
 
         def band(i: int) -> None:
-            _ink.gather(values, guide, kernel, self.step, out, edges[i], edges[i + 1])
+            _due.gather(values, guide, kernel, self.step, out, edges[i], edges[i + 1])
 
         self._each(band, range(len(edges) - 1))
         return out
@@ -156,14 +158,11 @@ class Sheet:
         self.weight = np.ones_like(self.tone)
         self.residual = self.tone - self.low_pass(self.ink)
 
-    def paint(self, lines: Polylines, widths: Floats, splat: bool = False) -> Ints:
+    def paint(self, lines: Polylines, widths: Floats) -> Ints:
         """Ink polylines (points), whatever is due. Returns (n,) how many subpixels each newly inks."""
-        order, fresh = np.arange(len(widths)), np.zeros(len(widths), np.int64)
-        _ink.paint(
-            self.bits, self.counts, self.residual, self.tone, self.kernel, self.step,
-            np.ascontiguousarray(lines.points * self.scale), lines.first, widths * self.pitch, order, self.gain,
-            splat, fresh,
-        )  # fmt: skip
+        fresh = np.zeros(len(widths), np.int64)
+        points = np.ascontiguousarray(lines.points * self.scale)
+        _ink.paint(self.bits, self.columns, points, lines.first, widths * self.pitch, self.gain, fresh)
         return fresh
 
     def place(
@@ -208,11 +207,11 @@ class Sheet:
         widths_sub = np.ascontiguousarray(widths * self.pitch)
 
         def run(order: Ints) -> None:
-            _ink.place(
-                self.bits, self.counts, self.residual, self.tone, self.kernel, self.step, self.weight, self.profile,
+            _place.place(
+                self.bits, self.residual, self.tone, self.kernel, self.step, self.weight, self.profile,
                 points, lines.first, widths_sub, walls, order, self.gain, moves, spacing,
                 whole, strict, caution, lenience, cost, shortest_pt * self.pitch, shortest_wall_pt * self.pitch,
-                runs, moved, np.empty((5, longest)), np.empty(longest, np.int64),
+                runs, moved, np.empty((6, longest)), np.empty(longest, np.int64),
             )  # fmt: skip
 
         block = self._blocks(lines)
@@ -239,9 +238,9 @@ class Sheet:
         low, high = np.ascontiguousarray(lightest * self.pitch), np.ascontiguousarray(heaviest * self.pitch)
 
         def run(order: Ints) -> None:
-            _ink.press(
-                self.bits, self.counts, self.gain, residual, self._coarse_tone, self._eye, self.step, self._eye_profile,
-                points, lines.first, pressed, low, high, order, np.empty((3, longest)),
+            _press.press(
+                self.bits, self.columns, self.gain, residual, self._coarse_tone, self._eye, self.step,
+                self._eye_profile, points, lines.first, pressed, low, high, order, np.empty((3, longest)),
             )  # fmt: skip
 
         block = self._blocks(lines)
