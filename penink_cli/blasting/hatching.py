@@ -38,6 +38,8 @@ FINE_LEAST, FINE_CAUTION = 0.4, 1.6
 FINE_SEEN = 0.015
 #: What a fine stroke must gain, and its least length.
 FINE_COST, FINE_SHORTEST_PT = 0.02, 14.0
+#: Along the frame strokes are drawn where it is darker, and count their own ink so many times.
+RIM_TONE, RIM_CAUTION = 0.85, 2.0
 #: Rows of fine strokes that are tried, and the moves sideways, in rows, that look for the middle of a gap.
 FINE_ROW_PT, FINE_MOVES = 1.5, (-0.5, -0.25, 0.25, 0.5, 0.0)
 #: How far a hand's pressure widens or narrows a stroke, and in how many rounds that is found.
@@ -142,8 +144,13 @@ def fine_strokes(
     full pen they streak the dark with doubled lines.
     """
     sheet.owe(sheet.tone)
+    rim = candidates.rim(sheet, min(pens), borders, RIM_TONE, seed)
+    runs, moved = sheet.place(
+        rim.lines, rim.widths, rim.batches, walls=rim.bounded, cost=FINE_COST, caution=RIM_CAUTION,
+        shortest_pt=candidates.SHORTEST_RIM_PT,
+    )  # fmt: skip
+    out = [rim.drawn(runs, moved)]
     seen = sheet.spread(sheet.error()) - np.float32(FINE_SEEN)
-    out = []
     for i, (layer, pen) in enumerate(zip(layers, pens)):
         if layer.spacing_pt > 0:
             continue  # what fills a gap would lie closer than it may
