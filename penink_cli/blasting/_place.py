@@ -10,6 +10,10 @@ from cython.cimports.penink_cli.blasting._due import splat
 from cython.cimports.penink_cli.blasting._ink import bar, cell, half_width, stroke
 
 COMPILED = cython.compiled
+#: Lighter than this is paper white; and a place is light. What ink gains there, per cell, that belongs there.
+PAPER = cython.declare(cython.double, 0.002)
+LIGHT = cython.declare(cython.double, 0.04)
+WORTH = cython.declare(cython.double, 0.05)
 
 
 @cython.cfunc
@@ -45,10 +49,10 @@ def _draw(
 def _gains(
     bits: cython.p_ulonglong, rows: cython.Py_ssize_t, columns: cython.Py_ssize_t,
     residual: cython.float[:, ::1], guide: cython.float[:, ::1], weight: cython.float[:, ::1],
-    lenience: cython.double, profile: cython.double[::1],
+    lenience: cython.double, enters: cython.double, profile: cython.double[::1],
     points: cython.double[:, ::1], p0: cython.Py_ssize_t, p1: cython.Py_ssize_t,
     ox: cython.double, oy: cython.double, width: cython.double, gain: cython.double,
-    ink: cython.double[::1], own: cython.double[::1], due: cython.double[::1],
+    ink: cython.double[::1], own: cython.double[::1], due: cython.double[::1], most: cython.double[::1],
 ) -> cython.Py_ssize_t:
     """For each piece of a polyline: new ink (cells), the tone still due there, the tone the stroke itself would add.
 
@@ -87,6 +91,11 @@ def _gains(
         y = 0 if y < 0 else (rows - 1 if y >= rows else y)
         # where part of the kernel is cut off, less is due for the same want of ink: both sides are put at full weight
         due[i] = residual[y, x] / weight[y, x] + lenience * guide[y, x]
+        # where it is light a stroke is darker than what it stands for, as far as the kernel reaches: by the rule of the
+        # least error none would ever be drawn, so one that is known to belong there is worth its ink
+        most[i] = 1e30
+        if due[i] > 0.0 and PAPER < guide[y, x] < LIGHT and guide[y, x] > enters:
+            most[i] = 2.0 * due[i] - WORTH
         own[i] = 0.0
     # the kernel along the stroke, by distance in quarter cells; pieces are 1/16 … 1 cell or so apart
     for i in range(n):
@@ -99,6 +108,7 @@ def _gains(
                 break
             own[i] += ink[j] * profile[cython.cast(cython.Py_ssize_t, d)]
             own[j] += ink[i] * profile[cython.cast(cython.Py_ssize_t, d)]
+        own[i] = most[i] if most[i] < own[i] else own[i]
     return n
 
 
@@ -157,7 +167,8 @@ def place(
     points: cython.double[:, ::1], first: cython.longlong[::1], widths: cython.double[::1], walls: cython.uchar[::1],
     order: cython.longlong[::1], gain: cython.double,
     shifts: cython.double[::1], spacing: cython.double[::1],
-    whole: cython.bint, strict: cython.bint, caution: cython.double, lenience: cython.double, cost: cython.double,
+    whole: cython.bint, strict: cython.bint, caution: cython.double, lenience: cython.double,
+    enters: cython.double[::1], cost: cython.double,
     shortest: cython.double, shortest_wall: cython.double,
     runs: cython.longlong[:, :, ::1], moved: cython.double[:, ::1], scratch: cython.double[:, ::1],
     starts: cython.longlong[::1],
@@ -169,6 +180,7 @@ def place(
 
     caution: what a stroke adds itself counts so many times: 1 is where the squared error is least.
     lenience: this part of the tone wanted is taken to be due besides, so that mere noise cuts no stroke.
+    enters: (n,) the tone at which each is known to belong in a light place.
     shifts: the sideways moves tried, in units of spacing[i] (subpixels).
     runs: (n, most, 2) out, points first … last of each run of polyline i, -1 where there is none.
     moved: (n, 2) out, the move chosen.
@@ -242,8 +254,8 @@ def place(
             for j in range(shifts.shape[0]):
                 ox = nx * shifts[j] * spacing[i]
                 oy = ny * shifts[j] * spacing[i]
-                n = _gains(ink_bits, rows, columns, residual, guide, weight, lenience, profile, points, p0, p1, ox, oy,
-                           widths[i], gain, ink, own, due)
+                n = _gains(ink_bits, rows, columns, residual, guide, weight, lenience, enters[i], profile,
+                           points, p0, p1, ox, oy, widths[i], gain, ink, own, due, fresh)
                 if not whole and not strict:
                     value = _runs(n, ink, own, due, cost, least, least_wall, (walls[i] & 1) != 0, (walls[i] & 2) != 0,
                                   caution, total, best, starts)
@@ -273,8 +285,8 @@ def place(
                       widths[i], gain, fresh)
                 continue
             if m != shifts.shape[0] - 1:
-                n = _gains(ink_bits, rows, columns, residual, guide, weight, lenience, profile, points, p0, p1, bx, by,
-                           widths[i], gain, ink, own, due)
+                n = _gains(ink_bits, rows, columns, residual, guide, weight, lenience, enters[i], profile,
+                           points, p0, p1, bx, by, widths[i], gain, ink, own, due, fresh)
                 _runs(n, ink, own, due, cost, least, least_wall, (walls[i] & 1) != 0, (walls[i] & 2) != 0, caution,
                       total, best, starts)
             j = n

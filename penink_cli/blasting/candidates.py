@@ -11,7 +11,6 @@ import numpy.typing as npt
 from penink_cli.blasting import curves, sweep, walls
 from penink_cli.blasting.sheet import SIGMA_PT, Cells, Sheet
 from penink_cli.model import Floats, HatchLayer, Ints, Strokes
-from penink_cli.textures.even import direction
 
 #: Strokes are sampled at about this distance.
 STEP_PT = 1.5
@@ -53,7 +52,7 @@ def between_walls(
     first: Ints,
     joined: npt.NDArray[np.bool_],
     slack: Floats,
-    pen: float,
+    widths: Floats,
     painted: float,
     borders: walls.Walls,
     sheet: Sheet,
@@ -78,11 +77,11 @@ def between_walls(
     goes_on[:-1, 1] &= goes_on[1:, 0] & (np.diff(parts.curve) == 1)
     points, first, begins = without_stubs(points, first, goes_on[:-1, 1])
     order = np.argsort(rank[parts.curve[begins]], kind="stable")
-    ends = np.append(begins[1:], len(bounded)) - 1
+    ends = np.append(begins[1:], len(bounded))[: len(begins)] - 1
     bounded = (bounded[begins] & 1) | (bounded[ends] & 2)
     pieces = curves.pieces_of(points, first, STEP_PT)
     return Candidates(
-        points, first, pieces, curves.sample(points, first, pieces), np.full(len(first) - 1, pen), bounded,
+        points, first, pieces, curves.sample(points, first, pieces), widths[parts.curve[begins]], bounded,
         [part for part in np.array_split(order, BATCHES) if len(part)], borders.box,
     )  # fmt: skip
 
@@ -123,13 +122,16 @@ def without_stubs(points: Floats, first: Ints, joint: npt.NDArray[np.bool_]) -> 
 
 
 def swept(
-    sheet: Sheet, coverage: Floats, layer: HatchLayer, pen: float, gain_pt: float, borders: walls.Walls, seed: int
-) -> Candidates:
+    sheet: Sheet, coverage: Floats, layer: HatchLayer, pen: float, finest: float, gain_pt: float, borders: walls.Walls,
+    seed: int,
+) -> Candidates:  # fmt: skip
     """The strokes of one layer that cover each cell as coverage asks, in no order."""
-    hatch = sweep.hatch(sheet, coverage, layer, pen, gain_pt, seed)
+    hatch = sweep.hatch(sheet, coverage, layer, pen, finest, gain_pt, seed)
     rank = np.random.default_rng([seed, 3]).random(len(hatch.joined))
     painted = sweep.painted_width(layer.angle, pen, gain_pt)
-    return between_walls(hatch.points, hatch.first, hatch.joined, hatch.slack, pen, painted, borders, sheet, rank)
+    return between_walls(
+        hatch.points, hatch.first, hatch.joined, hatch.slack, hatch.widths, painted, borders, sheet, rank
+    )
 
 
 def lattice(
@@ -142,7 +144,7 @@ def lattice(
     error: (rows, columns) and where this is positive.
     """
     rng = np.random.default_rng([seed, 4])
-    c, s = direction(layer.angle)
+    c, s = sweep.heading(layer.angle)
     along, across = np.array([c, s]), np.array([-s, c])
     corners = np.array([[0, 0], [sheet.width, 0], [0, sheet.height], [sheet.width, sheet.height]], float)
     u_range, v_range = corners @ along, corners @ across
@@ -169,7 +171,9 @@ def lattice(
     cubics = middle[:, None, :] + uu[..., None] * along + vv[..., None] * across
     points, first = cubics.reshape(-1, 2), np.arange(len(half) + 1) * 4
     none = np.zeros((len(half), 2))
-    return between_walls(points, first, none.astype(bool), none, pen, painted, borders, sheet, -due)
+    return between_walls(
+        points, first, none.astype(bool), none, np.full(len(half), pen), painted, borders, sheet, -due
+    )
 
 
 def rim(sheet: Sheet, pen: float, borders: walls.Walls, darkest_from: float, seed: int) -> Candidates:
@@ -204,5 +208,6 @@ def rim(sheet: Sheet, pen: float, borders: walls.Walls, darkest_from: float, see
     n = len(start)
     none, within = np.zeros((n, 2)), replace(borders, box=(d, d, w - d, h - d))
     return between_walls(
-        points, np.arange(n + 1) * 4, none.astype(bool), none, pen, pen + sheet.gain_pt, within, sheet, np.zeros(n)
-    )
+        points, np.arange(n + 1) * 4, none.astype(bool), none, np.full(n, pen), pen + sheet.gain_pt, within, sheet,
+        np.zeros(n),
+    )  # fmt: skip

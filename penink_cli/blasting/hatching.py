@@ -25,6 +25,8 @@ RUN_COST = 0.25
 #: This part of the tone is taken to be due besides: where the sweep laid a stroke is right on the whole, and the noise
 #: of what lies around it is no reason to cut it.
 LENIENCE = 0.1
+#: Where it is lighter, less of the error is fed back: a single line is too dark where it is and too light beside it.
+SINGLE = 0.06
 #: Rounds: the first ones lay the lines anew, the later ones only trim.
 SWEEPS, ROUNDS = 2, 3
 #: How much of the error the next sweep's density takes up.
@@ -37,9 +39,9 @@ FINE_LEAST, FINE_CAUTION = 0.4, 1.6
 #: And the eye must see the place too light by this.
 FINE_SEEN = 0.015
 #: What a fine stroke must gain, and its least length.
-FINE_COST, FINE_SHORTEST_PT = 0.02, 14.0
+FINE_COST, FINE_SHORTEST_PT = 0.02, 20.5
 #: Along the frame strokes are drawn where it is darker, and count their own ink so many times.
-RIM_TONE, RIM_CAUTION = 0.85, 2.0
+RIM_TONE, RIM_CAUTION = 0.85, 4.0
 #: Rows of fine strokes that are tried, and the moves sideways, in rows, that look for the middle of a gap.
 FINE_ROW_PT, FINE_MOVES = 1.5, (-0.5, -0.25, 0.25, 0.5, 0.0)
 #: How far a hand's pressure widens or narrows a stroke, and in how many rounds that is found.
@@ -71,11 +73,13 @@ def hatch_sheet(
     """
     borders = walls.build(edges, sheet, max(pen_pt or layer.pen_pt for layer in layers))
     pens = [pen_pt or layer.pen_pt for layer in layers]
+    finest = pens if pen_pt else [min(pen, max(FINE * pen, FINE_DOTS * gain_pt)) for pen in pens]
     along = thin.strokes_along(sheet, min(pens), min(pens) + gain_pt * 1.27, pen_pt is not None)
     draw_first(sheet, along)
     there = np.minimum(sheet.low_pass(sheet.ink) / sheet.weight, np.float32(0.99))
     wanted: Cells = sheet.tone.copy()
     density: Cells = sheet.tone.copy()
+    crowd = in_a_crowd(sheet)
     laid: list[candidates.Candidates] = []
     best: tuple[float, int, list[Strokes]] | None = None
     for turn in range(ROUNDS):
@@ -85,22 +89,25 @@ def hatch_sheet(
             smooth = np.clip(smooth, 0.0, 0.995).astype(np.float64)
             around = sheet.spread(sheet.seen(density)).astype(np.float64)
             laid = [
-                candidates.swept(sheet, cover, layer, pen, gain_pt, borders, seed * 64 + i)
-                for i, (layer, pen, cover) in enumerate(zip(layers, pens, shares(smooth, around, layers)))
+                candidates.swept(sheet, cover, layer, pen, fine, gain_pt, borders, seed * 64 + i)
+                for i, (layer, pen, fine, cover) in enumerate(
+                    zip(layers, pens, finest, shares(smooth, around, layers))
+                )
             ]
         sheet.clear()
         sheet.owe(wanted)
         strokes = [along]
         for part in laid:
             runs, moved = sheet.place(
-                part.lines, part.widths, part.batches, walls=part.bounded, cost=RUN_COST, lenience=LENIENCE
-            )
+                part.lines, part.widths, part.batches, walls=part.bounded, cost=RUN_COST, lenience=LENIENCE,
+                enters=np.zeros(len(part.widths)),
+            )  # fmt: skip
             strokes.append(part.drawn(runs, moved))
         error = sheet.error()
         size = float(np.mean(np.square(error, dtype=np.float64)))
         if best is None or size < best[0]:
             best = size, turn, strokes
-        error = sheet.spread(error)
+        error = sheet.spread(error) * crowd
         wanted = wanted + error
         density = density + np.float32(SWEEP_GAIN) * error
     assert best is not None
@@ -109,12 +116,16 @@ def hatch_sheet(
     if best[1] != ROUNDS - 1:
         sheet.clear()
         paint(sheet, drawn)
-    finest = pens if pen_pt else [min(pen, max(FINE * pen, FINE_DOTS * gain_pt)) for pen in pens]
     fine = fine_strokes(sheet, layers, finest, gain_pt, borders, seed)
     drawn = join([drawn, *fine], sheet.width, sheet.height)
     if pen_pt is None and len(drawn):
         drawn = press(sheet, drawn, seed)
     return drawn
+
+
+def in_a_crowd(sheet: Sheet) -> Cells:
+    """How far a stroke in each cell (rows, columns) is one of many that make the tone together, 0 … 1."""
+    return np.minimum(sheet.low_pass(sheet.tone) / sheet.weight * np.float32(1 / SINGLE), np.float32(1))
 
 
 def draw_first(sheet: Sheet, strokes: Strokes) -> None:
@@ -171,10 +182,14 @@ def press(sheet: Sheet, strokes: Strokes, seed: int) -> Strokes:
     pieces = curves.pieces_of(strokes.points, strokes.first, candidates.STEP_PT)
     lines = curves.sample(strokes.points, strokes.first, pieces)
     widths = strokes.widths
+    # a single line in a light place is no darker than it should be
+    middle = lines.points[(lines.first[:-1] + lines.first[1:]) // 2] * (sheet.scale / 8)
+    at = np.clip(middle.astype(np.int64), 0, (sheet.columns - 1, sheet.rows - 1))
+    pressure = PRESSURE * in_a_crowd(sheet)[at[:, 1], at[:, 0]].astype(np.float64)
     for turn in range(PRESSES):
         if turn:
             sheet.clear()
             sheet.paint(lines, widths)
-        widths = sheet.press(lines, widths, strokes.widths * (1 - PRESSURE), strokes.widths * (1 + PRESSURE), [order])
+        widths = sheet.press(lines, widths, strokes.widths * (1 - pressure), strokes.widths * (1 + pressure), [order])
     widths = np.maximum(np.round(widths, 2), 0.01)
     return Strokes(strokes.width, strokes.height, strokes.points, strokes.first, widths)

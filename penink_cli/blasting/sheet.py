@@ -179,6 +179,7 @@ class Sheet:
         cost: float = 0.0,
         caution: float = 1.0,
         lenience: float = 0.0,
+        enters: Floats | None = None,
         shortest_pt: float = 7.0,
         shortest_wall_pt: float = 2.0,
         most: int = 4,
@@ -190,7 +191,8 @@ class Sheet:
         shifts: sideways moves to try, in units of spacing_pt (n,).
         cost: what a run must gain, in cells × tone. caution: how many times the stroke's own ink counts
         against it; 1 is where the squared error is least. lenience: the part of the tone that is taken to be due
-        besides, so that mere noise cuts no stroke. Returns the runs (r, 3): polyline, first and last of
+        besides, so that mere noise cuts no stroke. enters: (n,) the tone at which each is known to belong where it is
+        light: there the low-pass is too narrow to tell. Returns the runs (r, 3): polyline, first and last of
         its points, and how far each run was moved (r, 2) in points.
 
         Polylines of one batch are tried in blocks; those of every second block each way at the
@@ -200,6 +202,7 @@ class Sheet:
         points = np.ascontiguousarray(lines.points * self.scale)
         walls = np.zeros(n, np.uint8) if walls is None else walls
         spacing = np.zeros(n) if spacing_pt is None else spacing_pt * self.pitch
+        belongs = np.full(n, np.inf) if enters is None else np.ascontiguousarray(enters)
         runs = np.full((n, most, 2), -1, np.int64)
         moved = np.zeros((n, 2))
         moves = np.asarray(shifts, np.float64)
@@ -210,7 +213,8 @@ class Sheet:
             _place.place(
                 self.bits, self.residual, self.tone, self.kernel, self.step, self.weight, self.profile,
                 points, lines.first, widths_sub, walls, order, self.gain, moves, spacing,
-                whole, strict, caution, lenience, cost, shortest_pt * self.pitch, shortest_wall_pt * self.pitch,
+                whole, strict, caution, lenience, belongs, cost,
+                shortest_pt * self.pitch, shortest_wall_pt * self.pitch,
                 runs, moved, np.empty((6, longest)), np.empty(longest, np.int64),
             )  # fmt: skip
 

@@ -17,7 +17,7 @@ from penink_cli.model import EdgeList, Floats, Ints
 CELL_PT = 6.0
 #: Steps of tone at which an edge is a wall, and at which it is one if it goes on from a wall. Cutting strokes at
 #: every weak edge leaves stubble between edges that run side by side.
-STRONG, WEAK = 0.3, 0.18
+STRONG, WEAK = 0.35, 0.18
 #: The tone of an edge's side is looked up so far from it, points.
 BESIDE_PT = 1.4
 #: Pieces between walls that are shorter are not drawn.
