@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from penink_cli.drawing import Advance, as_written, enlarged, grey_size, joined, outlined, tone_curve
-from penink_cli.model import Floats, GreyImage, Illustration, Layer, Strokes
+from penink_cli.model import Floats, GreyImage, Illustration, Strokes
 
 LEAST_TONE = 1 / 255  # below it an overlay is paper
 #: Layers that share a sheet are hatched anew with what was left over, so many times in all at the most, unless
@@ -85,6 +85,7 @@ def _hatched(
     ink = joined(outlines)
     total: Floats | None = None
     result = []
+    by_device = _hatched_as_by_a_device(illustration, width_pt, height_pt, device_dpi, outlines, threads)
     for i, (layer, grey) in enumerate(zip(illustration.layers, greys)):
         tone = tone_curve(grey, layer.gamma)
         total = tone if total is None else np.minimum(1.0, total + tone)
@@ -94,7 +95,7 @@ def _hatched(
         if i > 0 or extra is not None:
             wanted = np.where(tone >= LEAST_TONE, wanted, 0.0)
         if layer.rule == "threshold":
-            hatched = _hatched_as_by_a_device(layer, width_pt, height_pt, device_dpi, outlines[i], threads)
+            hatched = by_device[i]
         else:
             hatched = blast(
                 wanted, width_pt, height_pt, layer.edges, layer.texture, seed=seed + layer.seed + i,
@@ -110,17 +111,31 @@ def _hatched(
 
 
 def _hatched_as_by_a_device(
-    layer: Layer, width_pt: float, height_pt: float, device_dpi: float | None, ink: Strokes, threads: int | None
-) -> Strokes:
-    """Hatching from the samples and edges as a device is sent them, on the grid that it fills."""
+    illustration: Illustration, width_pt: float, height_pt: float, device_dpi: float | None, outlines: list[Strokes],
+    threads: int | None,
+) -> dict[int, Strokes]:  # fmt: skip
+    """Hatching of the layers with the threshold rule, from samples and edges as a device is sent them, on its grids."""
+    numbers = [i for i, layer in enumerate(illustration.layers) if layer.rule == "threshold"]
+    if not numbers:
+        return {}
     from penink_cli.blasting import threshold
     from penink_cli.reconstruction.enlarge import enlarge
-    from penink_cli.selfdrawing.data import as_sent
+    from penink_cli.selfdrawing.data import as_sent, family
 
-    samples, edges = as_sent(layer)
-    h, w = samples.values.shape
-    n, m = threshold.grid(layer.texture, layer.pen_pt, device_dpi, width_pt, height_pt)
-    tone = tone_curve(enlarge(samples, edges, max(n, w), max(m, h), threads=threads), layer.gamma)
-    return threshold.blast_by_threshold(
-        tone, width_pt, height_pt, edges, layer.texture, layer.pen_pt, device_dpi, ink if len(ink) else None
-    )
+    layers = [illustration.layers[i] for i in numbers]
+    sheet = threshold.paper([(layer.texture, layer.pen_pt) for layer in layers], width_pt, height_pt, device_dpi)
+    tones, edges = [], []
+    for i, layer in zip(numbers, layers, strict=True):
+        if len(outlines[i]):
+            sheet.cover(outlines[i])
+        samples, sent = as_sent(layer)
+        h, w = samples.values.shape
+        n, m = threshold.grid(layer.texture, layer.pen_pt, device_dpi, width_pt, height_pt)
+        grey = enlarge(samples, sent, max(n, w), max(m, h), threads=threads)
+        tones.append(threshold.in_255ths(tone_curve(grey, layer.gamma)))
+        edges.append(sent)
+    added = threshold.add_up(tones, [family(illustration, i) for i in numbers])
+    return {
+        i: threshold.blast_on(sheet, *tone, sent, layer.texture, layer.pen_pt, device_dpi)
+        for i, layer, tone, sent in zip(numbers, layers, added, edges, strict=True)
+    }

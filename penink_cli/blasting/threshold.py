@@ -9,6 +9,8 @@ is added to the tone of the second.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
@@ -19,7 +21,7 @@ from penink_cli.model import EdgeList, Floats, Ints, Strokes, Texture
 from penink_cli.textures.even import direction
 from penink_cli.textures.threshold import WIDENED_PT, Screen, ThresholdTable, table
 
-BLOCK_PT = 9.0
+BLOCKS = 9.0  # units: side of the blocks in which ink is compared with tone
 GAP, SHORT, DEEP = 3, 3.0, 24.0
 
 Bytes = npt.NDArray[np.uint8]
@@ -53,6 +55,79 @@ def _copies(screen: Screen, width: float, height: float) -> npt.NDArray[np.int32
 LEAST_PIXELS = 2.45
 
 
+@dataclass(eq=False)
+class Paper:
+    """What the layers of a sheet share: blocks, side_pt square, in which ink is compared with tone.
+
+    bare: (rows, columns) the part of each that is still paper; changed by those who draw.
+    """
+
+    width_pt: float
+    height_pt: float
+    side_pt: float
+
+    def __post_init__(self) -> None:
+        self.bare = np.ones((math.ceil(self.height_pt / self.side_pt), math.ceil(self.width_pt / self.side_pt)))
+        tall = np.minimum(self.side_pt, self.height_pt - self.side_pt * np.arange(self.bare.shape[0]))
+        wide = np.minimum(self.side_pt, self.width_pt - self.side_pt * np.arange(self.bare.shape[1]))
+        self.area = np.outer(tall, wide)  # square points
+
+    def cover(self, ink: Strokes) -> None:
+        """Take the ink of outlines from what is bare."""
+        lines = curves.sample(ink.points, ink.first, curves.pieces_of(ink.points, ink.first, 1.0))
+        begin = np.setdiff1d(np.arange(len(lines.points)), lines.first[1:] - 1)
+        a, b = lines.points[begin], lines.points[np.minimum(begin + 1, len(lines.points) - 1)]
+        owner = np.searchsorted(lines.first, begin, side="right") - 1
+        covered = np.sqrt(((b - a) ** 2).sum(axis=1)) * (ink.widths[owner] + WIDENED_PT)
+        middle = (a + b) / 2
+        inside = (middle >= 0).all(axis=1) & (middle < (self.width_pt, self.height_pt)).all(axis=1)
+        x, y = (middle[inside] / self.side_pt).astype(np.int64).T
+        total = np.zeros_like(self.bare)
+        np.add.at(total, (y, x), covered[inside])
+        self.bare *= 1 - np.minimum(total / self.area, 1.0)
+
+
+def paper(
+    layers: Sequence[tuple[Texture, float | None]], width_pt: float, height_pt: float, dpi: float | None
+) -> Paper:
+    """A sheet for layers of these textures and pens."""
+    return Paper(width_pt, height_pt, BLOCKS * max(_unit_of(texture, pen, dpi) for texture, pen in layers))
+
+
+def in_255ths(tone: Floats) -> Bytes:
+    """Tone 0 … 1 as a device has it."""
+    return np.floor(np.clip(tone, 0.0, 1.0) * 255 + 0.5).astype(np.uint8)
+
+
+def add_up(tones: Sequence[Bytes], families: Sequence[int]) -> list[tuple[Bytes, Bytes]]:
+    """For layers, bottom first, tone (h, w) in 255ths to be hatched, and of each the sum with those below.
+
+    families: equal for layers of one texture and pen. Where a layer lies over one of its family its strokes stand for
+    both; over others it is hatched the more densely, the more of its ink will fall on theirs.
+    """
+    own = [tone.copy() for tone in tones]
+    for i, tone in enumerate(own):
+        for k in range(i):
+            if families[k] == families[i]:
+                under, over = _looked(own[k], tone.shape), _looked(tone, own[k].shape)
+                tone[:] = np.where(tone > 0, np.minimum(255, tone.astype(int) + under), 0)
+                own[k][over > 0] = 0
+    out: list[tuple[Bytes, Bytes]] = []
+    for tone in own:
+        below = _looked(out[-1][1], tone.shape).astype(int) if out else np.zeros(tone.shape, int)
+        total = tone + below
+        room = np.floor(tone / np.maximum(255 - below, 1) * 255.0 + 0.5)
+        wanted = np.where(tone == 0, 0, np.where(total >= 255, 255, room))
+        out.append((wanted.astype(np.uint8), np.minimum(total, 255).astype(np.uint8)))
+    return out
+
+
+def _looked(values: Bytes, shape: tuple[int, ...]) -> Bytes:
+    """The values (h, w) that lie at the middles of the cells of a grid of another shape."""
+    y, x = (((np.arange(n) + 0.5) * m / n).astype(int) for n, m in zip(shape, values.shape, strict=True))
+    return values[y[:, None], x[None, :]]
+
+
 def blast_by_threshold(
     tone: Floats, width_pt: float, height_pt: float, edges: EdgeList | None, texture: Texture, pen_pt: float | None,
     device_dpi: float | None, outlines: Strokes | None = None,
@@ -61,22 +136,34 @@ def blast_by_threshold(
 
     tone: (h, w) 0 … 1. A device asks for one value a unit; finer ones are taken as they are, up to four.
     """
-    sizes = table(texture, pen_pt)
-    gain = 72.0 / device_dpi if device_dpi else 0.0
-    unit = _unit(sizes, pen_pt, gain)
     n, m = grid(texture, pen_pt, device_dpi, width_pt, height_pt)
     rows, columns = tone.shape
     if rows < m or columns < n or rows > 4 * m or columns > 4 * n:
         tone = resample(tone, m, n)
-    ink = np.floor(np.clip(tone, 0.0, 1.0) * 255 + 0.5).astype(np.uint8)
+    sheet = paper([(texture, pen_pt)], width_pt, height_pt, device_dpi)
+    if outlines is not None:
+        sheet.cover(outlines)
+    ink = in_255ths(tone)
+    return blast_on(sheet, ink, ink, edges, texture, pen_pt, device_dpi)
+
+
+def blast_on(
+    sheet: Paper, ink: Bytes, total: Bytes, edges: EdgeList | None, texture: Texture, pen_pt: float | None,
+    device_dpi: float | None,
+) -> Strokes:  # fmt: skip
+    """Strokes of one layer. ink, total: (m, n) as `add_up` has them."""
+    width_pt, height_pt = sheet.width_pt, sheet.height_pt
+    sizes = table(texture, pen_pt)
+    gain = 72.0 / device_dpi if device_dpi else 0.0
+    unit = _unit(sizes, pen_pt, gain)
+    n, m = grid(texture, pen_pt, device_dpi, width_pt, height_pt)
     squares = max(1, n // 4), max(1, m // 4)
     ends = np.zeros((0, 4))
     if edges is not None and len(edges.edges):
         ends = (edges.scaled(*squares) - 0.5)[edges.edges].reshape(-1, 4)
-    bare = None if outlines is None else _left_bare(outlines, width_pt / unit, height_pt / unit, unit)
     parts = []
     for screen, (points, stops) in zip(
-        sizes.screens, draw(ink, ends, squares, sizes, width_pt, height_pt, unit, bare=bare), strict=True
+        sizes.screens, draw(ink, total, ends, squares, sizes, sheet, unit), strict=True
     ):
         pen = pen_pt or max(sizes.pen_pt * unit - gain * screen.widens, 0.02)
         parts.append(_smooth(*_within(points, stops, width_pt, height_pt, pen / 2), pen))
@@ -89,8 +176,12 @@ def grid(
     texture: Texture, pen_pt: float | None, device_dpi: float | None, width_pt: float, height_pt: float
 ) -> tuple[int, int]:
     """How many values of tone a device wants, across and down: one a unit, which is about a point."""
-    unit = _unit(table(texture, pen_pt), pen_pt, 72.0 / device_dpi if device_dpi else 0.0)
+    unit = _unit_of(texture, pen_pt, device_dpi)
     return max(1, math.floor(width_pt / unit + 0.5)), max(1, math.floor(height_pt / unit + 0.5))
+
+
+def _unit_of(texture: Texture, pen_pt: float | None, device_dpi: float | None) -> float:
+    return _unit(table(texture, pen_pt), pen_pt, 72.0 / device_dpi if device_dpi else 0.0)
 
 
 def _unit(sizes: ThresholdTable, pen_pt: float | None, gain_pt: float) -> float:
@@ -147,48 +238,26 @@ def _smooth(points: Floats, stops: Ints, pen: float) -> tuple[Floats, Ints, Floa
     return control[keep], 3 * (stops - start) - 2, np.full(len(stops), pen)
 
 
-def _left_bare(ink: Strokes, w: float, h: float, unit: float) -> Floats:
-    """What strokes that are there already leave of each block, on a page of w × h units."""
-    bare = np.ones((math.ceil(h / BLOCK_PT), math.ceil(w / BLOCK_PT)))
-    lines = curves.sample(ink.points, ink.first, curves.pieces_of(ink.points, ink.first, 2 * unit))
-    points = lines.points / unit
-    begin = np.setdiff1d(np.arange(len(points)), lines.first[1:] - 1)
-    middle = (points[begin] + points[np.minimum(begin + 1, len(points) - 1)]) / 2
-    step = points[np.minimum(begin + 1, len(points) - 1)] - points[begin]
-    owner = np.searchsorted(lines.first, begin, side="right") - 1
-    covered = np.sqrt((step**2).sum(axis=1)) * ink.widths[owner] / unit / BLOCK_PT**2
-    inside = (middle >= 0).all(axis=1) & (middle[:, 0] < w) & (middle[:, 1] < h)
-    at = (middle[inside] / BLOCK_PT).astype(np.int64)
-    np.multiply.at(bare, (at[:, 1], at[:, 0]), np.maximum(0.0, 1.0 - covered[inside]))
-    return bare
-
-
 def draw(
-    tone: Bytes, ends: Floats, samples: tuple[int, int], table: ThresholdTable, width: float, height: float,
-    unit: float, feedback: int = 1, bare: Floats | None = None,
-) -> list[tuple[Floats, Ints]]:  # fmt: skip
-    """For each screen its runs on a page of width × height points: points (p, 2) of polylines, and where each ends.
+    tone: Bytes, total: Bytes, ends: Floats, samples: tuple[int, int], table: ThresholdTable, sheet: Paper, unit: float
+) -> list[tuple[Floats, Ints]]:
+    """For each screen its runs: points (p, 2) of polylines, and where each ends.
 
-    tone: (m, n) ink in 255ths on a grid that fills the page. ends: (e, 4) the edges, on a grid of samples (w, h)
-    whose first lies at 0, 0. unit: magnification of pen and tile. bare: what earlier ink leaves of each block.
+    tone, total: (m, n) as `add_up` has them. ends: (e, 4) the edges, on a grid of samples (w, h)
+    whose first lies at 0, 0. unit: magnification of pen and tile. The sheet is left as bare as it will be.
     """
-    before = bare
-    w, h = width / unit, height / unit
+    w, h, block = sheet.width_pt / unit, sheet.height_pt / unit, sheet.side_pt / unit
     columns, rows = samples[0] + 1, samples[1] + 1
     first, items = buckets(ends, columns, rows)
     ax, ay, bx, by = (np.ascontiguousarray(ends[:, i], np.float64) if len(ends) else np.zeros(1) for i in range(4))
     wanted = tone
-    for left in range(feedback, -1, -1):
-        bare = np.ones((math.ceil(h / BLOCK_PT), math.ceil(w / BLOCK_PT))) if before is None else before.copy()
-        tall = np.minimum(BLOCK_PT, h - BLOCK_PT * np.arange(bare.shape[0]))
-        wide = np.minimum(BLOCK_PT, w - BLOCK_PT * np.arange(bare.shape[1]))
-        area = np.outer(tall, wide)
+    for painting in (False, True):
         parts = []
         for screen in table.screens:
             c, s = direction(screen.angle)
             control = np.ascontiguousarray(screen.points.reshape(-1, 4, 2))
             copies = _copies(screen, w, h)
-            ink = np.zeros_like(bare)
+            ink = np.zeros_like(sheet.bare)
             room = 1 << 20
             while True:
                 points, ends_of, count = np.zeros((room, 2)), np.zeros(room // 2, np.int64), np.zeros(2, np.int64)
@@ -197,40 +266,47 @@ def draw(
                     wanted, w, h, control, screen.enters * 255, screen.fresh_of_each, screen.line, table.way,
                     screen.level, c, s, screen.width, screen.height, screen.wave, screen.turn, copies,
                     columns, rows, ax, ay, bx, by, first, items,
-                    table.pen_pt, table.whole, GAP, SHORT, DEEP, BLOCK_PT, ink, points, ends_of, count,
+                    table.pen_pt, table.whole, GAP, SHORT, DEEP, block, ink, points, ends_of, count,
                 ):  # fmt: skip
                     break
                 room *= 4
-            bare *= 1 - np.minimum(ink / area, 1.0)
+            if not painting:
+                sheet.bare *= 1 - np.minimum(ink * unit * unit / sheet.area, 1.0)
             parts.append((points[: count[0]] * unit, ends_of[: count[1]]))
-        if left:
-            wanted = corrected(tone, bare, area, w, h)
+        if not painting:
+            wanted = corrected(tone, total, sheet)
     return parts
 
 
-def corrected(tone: Bytes, bare: Floats, area: Floats, w: float, h: float) -> Bytes:
-    """The tone with what a pass that leaves the blocks so `bare` lacks, smoothed over the blocks, added."""
+def corrected(tone: Bytes, total: Bytes, sheet: Paper) -> Bytes:
+    """The tone with what a pass that leaves the sheet so bare lacks of the total, smoothed over the blocks, added.
+
+    The sheet is then as bare as what is added will leave it.
+    """
     m, n = tone.shape
-    by = np.minimum((np.arange(m) + 0.5) * h / m // BLOCK_PT, bare.shape[0] - 1).astype(int)
-    bx = np.minimum((np.arange(n) + 0.5) * w / n // BLOCK_PT, bare.shape[1] - 1).astype(int)
-    total = np.zeros_like(bare)
-    cells = np.zeros_like(bare)
-    np.add.at(total, (by[:, None], bx[None, :]), tone)
+    across, down = sheet.width_pt / n / sheet.side_pt, sheet.height_pt / m / sheet.side_pt  # blocks a cell
+    by = np.minimum((np.arange(m) + 0.5) * down, sheet.bare.shape[0] - 1).astype(int)
+    bx = np.minimum((np.arange(n) + 0.5) * across, sheet.bare.shape[1] - 1).astype(int)
+    tones = np.zeros_like(sheet.bare)
+    cells = np.zeros_like(sheet.bare)
+    np.add.at(tones, (by[:, None], bx[None, :]), total)
     np.add.at(cells, (by[:, None], bx[None, :]), 1)
-    lack = total / np.maximum(cells, 1) - 255 * (1 - bare)
+    lack = tones / np.maximum(cells, 1) - 255 * (1 - sheet.bare)
     for axis in (0, 1):
         padded = np.pad(lack, [(1, 1) if a == axis else (0, 0) for a in (0, 1)], "edge")
         before = np.take(padded, range(lack.shape[axis]), axis)
         after = np.take(padded, range(2, lack.shape[axis] + 2), axis)
         lack = (before + 2 * lack + after) / 4
 
-    def spread(count: int, size: float, blocks: int) -> tuple[Ints, Ints, Floats]:
-        at = (np.arange(count) + 0.5) * size / count / BLOCK_PT - 0.5
+    sheet.bare = np.clip(sheet.bare - lack / 255, 0.0, 1.0)
+
+    def spread(count: int, per: float, blocks: int) -> tuple[Ints, Ints, Floats]:
+        at = (np.arange(count) + 0.5) * per - 0.5
         low = np.clip(np.floor(at), 0, blocks - 1).astype(int)
         return low, np.minimum(low + 1, blocks - 1), np.clip(at - low, 0, 1)
 
-    y0, y1, fy = spread(m, h, lack.shape[0])
-    x0, x1, fx = spread(n, w, lack.shape[1])
+    y0, y1, fy = spread(m, down, lack.shape[0])
+    x0, x1, fx = spread(n, across, lack.shape[1])
     rows = lack[y0] * (1 - fy)[:, None] + lack[y1] * fy[:, None]
     more = rows[:, x0] * (1 - fx) + rows[:, x1] * fx
     return np.where(tone == 0, 0, np.clip(np.floor(tone + more + 0.5), 0, 255)).astype(np.uint8)

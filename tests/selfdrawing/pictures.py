@@ -34,6 +34,19 @@ def illustration(n: int = 40, inches: float = 1.5, texture: Texture = CROSSHATCH
     return Illustration(72 * inches, 72 * inches, (layer,))
 
 
+def two_layers(below: Texture, above: Texture, inches: float = 1.5) -> Illustration:
+    """A ramp of light tone, and over it a square of middle tone within its edges, elsewhere paper."""
+    n = 40
+    y, x = (np.mgrid[:n, :n] + 0.5) / n
+    ramp = 0.1 + 0.3 * x
+    square = (np.abs(x - 0.5) < 0.25) & (np.abs(y - 0.5) < 0.25)
+    corners = np.array([(0.25, 0.25), (0.75, 0.25), (0.75, 0.75), (0.25, 0.75)]) * 640
+    edges = EdgeList(640, 640, corners, np.array([(0, 1), (1, 2), (2, 3), (3, 0)]))
+    grey = [GreyImage(np.rint((1 - tone) * 63).astype(np.uint8), 63) for tone in (ramp, np.where(square, 0.35, 0.0))]
+    layers = (Layer(grey[0], None, below), Layer(grey[1], edges, above))
+    return Illustration(72 * inches, 72 * inches, layers)
+
+
 def expected_tone(layer: Layer, n: int, m: int) -> np.ndarray:
     """Ink in 255ths (m, n) as `enlarge` has it, not rounded to whole numbers."""
     samples, edges = data.as_sent(layer)

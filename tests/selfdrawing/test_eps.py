@@ -12,7 +12,7 @@ from penink_cli.errors import LimitError
 from penink_cli.model import GreyImage, OutlineChoice
 from penink_cli.selfdrawing import data, packer, postscript
 from penink_cli.texture_options import find_texture
-from tests.selfdrawing.pictures import expected_tone, ghostscript, illustration, printed
+from tests.selfdrawing.pictures import expected_tone, ghostscript, illustration, printed, two_layers
 
 CROP = ("-dEPSCrop",)
 
@@ -122,6 +122,21 @@ def test_outlines_are_drawn_and_weigh_in_the_tone(tmp_path):
     # the top of the disc, where the outline runs through light hatching
     y, x = round(300 * 1.5 * 0.23), round(300 * 1.5 * 0.4)
     assert (outlined[y - 3 : y + 4, x - 8 : x + 8] < 128).any(axis=0).all()
+
+
+@pytest.mark.parametrize("below", ["crosshatch", "stipple"])
+def test_tones_of_layers_add_up(below, tmp_path):
+    picture = two_layers(find_texture(below), find_texture("crosshatch"), inches=3)
+    page = 1 - printed(postscript.write(picture), tmp_path, 600, *CROP) / 255
+    total = sum(1 - layer.samples.values / 63 for layer in picture.layers)
+    blocks = page[:1800, :1800].reshape(10, 180, 10, 180).mean(axis=(1, 3))
+    wanted = total.reshape(10, 4, 10, 4).mean(axis=(1, 3))
+    within = np.s_[3:7, 3:7]  # the square; tones there are .42 to .68
+    assert np.abs(blocks - wanted)[within].mean() < 0.02
+    assert (blocks - wanted)[within].mean() == pytest.approx(0, abs=0.012)
+    around = np.ones((10, 10), bool)
+    around[2:8, 2:8] = False
+    assert (blocks - wanted)[around].mean() == pytest.approx(0, abs=0.012)
 
 
 def test_outlines_are_those_of_the_regions_chosen():

@@ -14,7 +14,7 @@ from penink_cli.model import Illustration
 from penink_cli.selfdrawing import html, postscript
 from penink_cli.texture_options import find_texture
 from tests.selfdrawing.chromium import Page
-from tests.selfdrawing.pictures import CROSSHATCH, ghostscript, illustration
+from tests.selfdrawing.pictures import CROSSHATCH, ghostscript, illustration, two_layers
 
 # every path that is stroked, in points from the top-left corner of a sheet as high as HEIGHT
 CATCH = b"""%!
@@ -45,8 +45,8 @@ def on_a_page(picture: Illustration, width: float, tmp_path) -> list[np.ndarray]
 
 def by_render(picture: Illustration, width: float) -> list[np.ndarray]:
     layers = tuple(replace(layer, rule="threshold") for layer in picture.layers)
-    ((strokes, _),) = layer_strokes(replace(picture, layers=layers), width)
-    return [strokes[i][::3] for i in range(len(strokes))]
+    drawn = layer_strokes(replace(picture, layers=layers), width)
+    return [strokes[i][::3] for strokes, _ in drawn for i in range(len(strokes))]
 
 
 def ends(found: list[np.ndarray], width: float, height: float) -> np.ndarray:
@@ -70,6 +70,17 @@ def test_all_three_draw_the_same_strokes(texture, width, tmp_path):
     assert len(ours) > 100
     for theirs in (on_a_printer(picture, width), on_a_page(picture, width, tmp_path)):
         theirs = ends(theirs, width, width)
+        assert len(theirs) == pytest.approx(len(ours), rel=0.01)
+        assert part_alike(ours, theirs, 0.03) > 0.985
+        assert part_alike(theirs, ours, 0.03) > 0.985
+
+
+@pytest.mark.parametrize("below", [CROSSHATCH, find_texture("stipple")], ids=["of one texture", "of two"])
+def test_all_three_add_layers_up_alike(below, tmp_path):
+    picture = two_layers(below, CROSSHATCH)
+    ours = ends(by_render(picture, 108), 108, 108)
+    for theirs in (on_a_printer(picture, 108), on_a_page(picture, 108, tmp_path)):
+        theirs = ends(theirs, 108, 108)
         assert len(theirs) == pytest.approx(len(ours), rel=0.01)
         assert part_alike(ours, theirs, 0.03) > 0.985
         assert part_alike(theirs, ours, 0.03) > 0.985
