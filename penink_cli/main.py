@@ -154,6 +154,9 @@ def _run(arguments: Sequence[str]) -> int:
     except Exception as error:
         if os.environ.get("PENINK_DEBUG") == "1":
             raise
+        if isinstance(error, ImportError) and "failed to map segment" in str(error):  # a library found no room
+            _complain(path, "not enough memory")
+            return 1
         _complain(path, f"internal error: {type(error).__name__}: {error} (PENINK_DEBUG=1 shows where)")
         return 1
 

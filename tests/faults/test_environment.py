@@ -77,6 +77,14 @@ def test_one_processor(server, inputs):
     assert run(words, preexec_fn=lambda: os.sched_setaffinity(0, one)) == server.run(*words).out
 
 
+@pytest.mark.parametrize("megabytes", [150, 200, 250, 300])
+def test_little_memory_is_one_line_or_none(megabytes, inputs):
+    command = ["sh", "-c", f'ulimit -v {megabytes * 1000}; exec "$@"', "-", *PYTHON, *arguments("detect-edges", inputs)]
+    done = subprocess.run(command, env=environment(), capture_output=True, check=False)
+    enough = done.returncode == 0 and not done.stderr and done.stdout
+    assert enough or (done.returncode, done.stderr) == (1, b"penink detect-edges: not enough memory\n"), done.stderr
+
+
 @pytest.mark.parametrize("name", [n for n in ("enlarge", "blast", "render") if n in CALLS])
 def test_any_number_of_threads(name, server, inputs):
     found = {server.run(*arguments(name, inputs), "--threads", n).out for n in (1, 2, 3, 16)}
