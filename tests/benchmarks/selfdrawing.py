@@ -19,7 +19,7 @@ from pathlib import Path
 
 import numpy as np
 from PIL import Image
-from scipy.ndimage import gaussian_filter
+from scipy.ndimage import gaussian_filter, maximum_filter, minimum_filter
 from skimage import data as pictures
 
 from penink_cli.arrangement.detection import detect_edges
@@ -30,6 +30,7 @@ from penink_cli.reconstruction.enlarge import enlarge
 from penink_cli.selfdrawing import data, html, postscript
 from penink_cli.texture_options import find_texture
 from tests.selfdrawing.chromium import Page
+from tests.selfdrawing.crossings import crossings
 from tests.selfdrawing.pictures import expected_tone, ghostscript, printed
 
 Image.MAX_IMAGE_PIXELS = None
@@ -153,12 +154,22 @@ def places(folder: Path) -> None:
         page, solid = (printed(place + body, folder, 300) for body in (eps, b"0 0 288 288 rectfill showpage\n"))
         light = page[solid == 0].mean() / 255
         print(f"  {how:26} tone {100 * (light - whole):+.2f} off, ink outside {(page[solid > 0] < 255).mean():.5f}")
-    three = b"%!\n<< /PageSize [612 792] >> setpagedevice /showpage { } def\n"
-    for move in (b"", b"300 0 translate 72 288 div dup scale", b"0 300 translate 2 dup scale 0 144 translate"):
-        three += b"save " + move + b"\n" + eps + b"\nrestore\n"
-    three += b"count = systemdict /showpage get exec\n"
-    left = ghostscript(three, "-sDEVICE=pbmraw", "-r150", "-sOutputFile=/dev/null").decode().split()
-    print(f"  three on a page: left on the stack {left}")
+    spots = ((36, 36, 288), (360, 36, 72), (36, 360, 216))  # left, bottom, width in points
+    three = b"%!\n<< /PageSize [612 612] >> setpagedevice /showpage { } def 7\n/dictionaries countdictstack def\n"
+    for x, y, wide in spots:
+        three += f"save {x} {y} translate {wide} 288 div dup scale\n".encode() + eps + b"\nrestore\n"
+    three += b"count = countdictstack dictionaries sub = = systemdict /showpage get exec\n"
+    out = folder / "three.pbm"
+    left = ghostscript(three, "-sDEVICE=pbmraw", "-r600", f"-sOutputFile={out}").decode().split()
+    page = np.asarray(Image.open(out).convert("L")) / 255.0
+    for x, y, wide in spots:
+        top, first, side = ((612 - y - wide) * 600 // 72, x * 600 // 72, wide * 600 // 72)
+        rms, bias = tone(page[top : top + side, first : first + side], p.layers[0], wide / 72)
+        page = page.copy()
+        page[top - 1 : top + side + 1, first - 1 : first + side + 1] = 1
+        print(f"  three on a page, {wide / 72:g} in: tone RMS {rms:.2f}, bias {bias:+.2f}")
+    print(f"  three on a page: objects left on the stack, dictionaries, and what was there: {left};"
+          f" ink elsewhere {(page < 1).sum()}")  # fmt: skip
     for pattern in ("a%d.pbm",):
         ghostscript(b"%!\n" + eps + b"\n" + eps, "-sDEVICE=pbmraw", "-r300", f"-sOutputFile={folder / pattern}")
     same = (folder / "a1.pbm").read_bytes() == (folder / "a2.pbm").read_bytes()
@@ -191,30 +202,50 @@ def latex(folder: Path) -> None:
               f" tone RMS {rms:.2f}, bias {bias:+.2f}")  # fmt: skip
 
 
+def middle_tone(p: Illustration) -> tuple[float, float]:
+    """Where in the picture, in shares of its width and height, the tone is some 30 % and changes least."""
+    tones = 1 - p.layers[0].samples.values / p.layers[0].samples.maxval
+    change = maximum_filter(tones, 7) - minimum_filter(tones, 7)
+    change[(tones < 0.25) | (tones > 0.35)] = 9
+    change[:6], change[-6:], change[:, :6], change[:, -6:] = 9, 9, 9, 9
+    j, i = np.unravel_index(change.argmin(), tones.shape)
+    return (i + 0.5) / tones.shape[1], (j + 0.5) / tones.shape[0]
+
+
 def page(folder: Path) -> None:
-    """Repainting, zoom, console and network of the page in Chromium."""
+    """Repainting (at most 300 ms), zoom, console and network of the page in Chromium."""
     # with what is drawn read back, or it would only be promised
     timed = (
         "(() => {%s; const began = performance.now(); repaint(); canvas.getContext('2d').getImageData(0, 0, 1, 1);"
         "return performance.now() - began})()"
     )
+    print("  medians of 9, ms that passed and (processor, of all the browser's threads); strokes' width in pixels and how")
+    print("  many are crossed an inch of 96, at a tone of 30 %, measured on screenshots of a place of middle tone")
     for photo in ("camera", "coins"):
         path = folder / "page.html"
         path.write_bytes(html.write(picture(photo), photo))
+        x, y = middle_tone(picture(photo))
         with Page(path) as shown:
+
+            def median(steps: list[str], shown: Page = shown) -> str:
+                before = shown.processor_ms()
+                times = [shown.evaluate(timed % step) for step in steps]
+                each = (shown.processor_ms() - before) / len(steps)
+                return f"{statistics.median(times):.0f} ({each:.0f})"
+
             for zoom in (1, 4, 24):
-                corner = -512 * (zoom - 1)
-                still = f"view.zoom = {zoom}, view.x = view.y = {corner}"
-                shown.evaluate(timed % still)
-                times = [shown.evaluate(timed % still) for _ in range(9)]
-                moved = [shown.evaluate(timed % f"{still} - {37 * k}") for k in range(9)]
-                fresh = [shown.evaluate(timed % f"{still}, view.zoom = {zoom * (1 + k / 50)}") for k in range(9)]
-                shown.evaluate(f"({still}, repaint())")
-                dark = shown.screenshot()[64:960, 64:900] < 128
-                width = dark.sum() / (dark[:, 1:] != dark[:, :-1]).sum() * 2
-                print(f"  {photo}, 1024 x 1024, zoom {zoom}: repaint {statistics.median(times):.0f} ms the same view,"
-                      f" {statistics.median(moved):.0f} moved, {statistics.median(fresh):.0f} zoomed (medians of 9);"
-                      f" ink {dark.mean():.3f}, strokes {width:.2f} pixels across", flush=True)  # fmt: skip
+                still = f"view.zoom = {zoom}, view.x = view.y = {-512 * (zoom - 1)}"
+                for _ in range(2):
+                    shown.evaluate(timed % still)
+                same = median([still] * 9)
+                moved = median([f"{still} - {37 * k}" for k in range(1, 10)])
+                fresh = median([f"{still}, view.zoom = {zoom * (1 + k / 50)}" for k in range(1, 10)])
+                there = f"view.x = 512 - {x} * size[0] * scale(), view.y = 512 - {y} * size[1] * scale()"
+                shown.evaluate(f"(view.zoom = {zoom}, {there}, repaint())")
+                width, density, patches = crossings(shown.screenshot()[:960])
+                strokes = f"strokes {width:.2f} wide, {96 * density:.1f} an inch ({patches} patches)"
+                print(f"  {photo}, 1024 x 1024, zoom {zoom}: repaint {same} the same view, {moved} moved,"
+                      f" {fresh} zoomed; {strokes}", flush=True)  # fmt: skip
             console = [line for line in shown.console if "willReadFrequently" not in line]
             print(f"  console: {console}; fetched besides the page: {len(shown.requests) - 1}")
 

@@ -58,6 +58,7 @@ class Page:
         self.session = self.call("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
         for domain in ("Page", "Runtime", "Log", "Network"):
             self.call(f"{domain}.enable")
+        self.call("Emulation.setTouchEmulationEnabled", enabled=True)
         self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False)
         self.call("Page.navigate", url=path.resolve().as_uri())
         self.until("document.body && document.body.dataset.ready === 'yes'")
@@ -107,6 +108,22 @@ class Page:
     def screenshot(self) -> np.ndarray:
         data = base64.b64decode(self.call("Page.captureScreenshot", format="png")["data"])
         return np.asarray(Image.open(io.BytesIO(data)).convert("L"))
+
+    def processor_ms(self) -> float:
+        """Processor time of all the browser's processes so far."""
+        stats = {}
+        for path in Path("/proc").glob("[0-9]*/stat"):
+            try:
+                fields = path.read_text().rsplit(")", 1)[1].split()
+            except OSError:  # it has ended
+                continue
+            stats[int(path.parent.name)] = int(fields[1]), int(fields[11]) + int(fields[12])
+        ours, ticks = {self.process.pid}, 0
+        for pid in sorted(stats):  # children are younger than their parents
+            if pid in ours or stats[pid][0] in ours:
+                ours.add(pid)
+                ticks += stats[pid][1]
+        return 1000.0 * ticks / os.sysconf("SC_CLK_TCK")
 
     def close(self) -> None:
         self.write.close()

@@ -20,11 +20,11 @@ WIDENED = 0.14  # points that a printer of 600 dpi adds to a stroke in the mean
 
 
 def lines_alone(apart: float = 40.0, even: bool = False) -> Illustration:
-    """White paper; a circle, a long weak line with a corner, and another `apart` pixels (a tenth of a point) below it."""
+    """White paper; a circle, a long weak line with a corner, and another `apart` pixels (tenths of a point) off."""
     turn = np.arange(48) * 2 * np.pi / 48
     circle = np.column_stack([320 + 200 * np.cos(turn), 640 + 200 * np.sin(turn)])
     one = np.array([(700.0, 300), (1200, 300), (1200, 900)])
-    other = one + [(-apart, apart)]
+    other = one + np.array([-apart, apart])
     vertices = np.vstack([circle, one, other])
     edges = [(i, (i + 1) % 48) for i in range(48)] + [(48, 49), (49, 50), (51, 52), (52, 53)]
     strength = np.array([0.6] * 48 + [0.2] * 2 + [0.1] * 2)
@@ -54,7 +54,8 @@ def on_a_page(picture: Illustration, width: float, tmp_path) -> Pieces:
     with Page(path, 300, 300) as page:
         found = page.evaluate(f"""(() => {{
           const out = [];
-          draw(layers, {width}, {width}, [0, 0, {width}, {width}], () => 0, (layer, xs, ys, pen) => out.push([pen, xs, ys]));
+          const keep = (layer, xs, ys, pen) => out.push([pen, xs, ys]);
+          draw(layers, {width}, {width}, [0, 0, {width}, {width}], () => 0, keep);
           return out;
         }})()""")
     return [(pen - WIDENED, np.column_stack([xs, ys])) for pen, xs, ys in found]

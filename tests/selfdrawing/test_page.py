@@ -2,11 +2,21 @@
 
 from __future__ import annotations
 
+import base64
+import io
+import subprocess
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
 import numpy as np
 import pytest
+from PIL import Image
+from scipy.ndimage import gaussian_filter
 
 from penink_cli.selfdrawing import html, postscript
 from tests.selfdrawing.chromium import Page
+from tests.selfdrawing.crossings import crossings
 from tests.selfdrawing.pictures import expected_tone, ghostscript, illustration
 
 
@@ -16,12 +26,6 @@ def page(tmp_path_factory):
     path.write_bytes(html.write(illustration(), "A <disc>"))
     with Page(path, 600, 600) as opened:
         yield opened
-
-
-def zoomed(page: Page, zoom: float) -> np.ndarray:
-    """The middle of the window, the picture's middle, where the disc's border and the ramp are."""
-    page.evaluate(f"view.zoom = {zoom}, view.x = view.y = 300 - 0.7 * size[0] * scale(), repaint()")
-    return page.screenshot()[100:500, 100:500]
 
 
 def test_tone_grid_equals_enlarge(page):
@@ -39,15 +43,30 @@ def test_a_window_has_the_strokes_of_the_whole(page):
     })()""")
 
 
+def middle_tone(page: Page, zoom: float) -> np.ndarray:
+    """A place of middle tone, away from edges."""
+    there = "view.x = 300 - 0.4 * size[0] * scale(), view.y = 300 - 0.8 * size[1] * scale()"
+    page.evaluate(f"(view.zoom = {zoom}, {there}, repaint())")
+    return page.screenshot()[:540]
+
+
 def test_zoom_keeps_width_and_density_of_strokes(page):
-    ink, edges = [], []
-    for zoom in (1, 6, 24):
-        shot = zoomed(page, zoom)[:, 220:] if zoom == 1 else zoomed(page, zoom)
-        dark = shot < 128
-        ink.append(dark.mean())
-        edges.append((dark[:, 1:] != dark[:, :-1]).sum() / max(1, dark.sum()))
-    # transitions per dark pixel are one over the strokes' width
-    assert max(edges) / min(edges) < 1.25, (ink, edges)
+    widths, densities = [], []
+    for zoom in (1, 4, 24):
+        width, density, patches = crossings(middle_tone(page, zoom))
+        assert patches > 15
+        widths.append(width)
+        densities.append(density)
+    assert max(widths) / min(widths) < 1.04
+    assert widths[0] == pytest.approx(1.08, abs=0.05)  # a pen of 0.54 units of 2 pixels
+    assert max(densities) / min(densities) < 1.1
+
+
+def test_strokes_that_grow_with_the_picture_are_told_apart(page):
+    shot = middle_tone(page, 4)
+    larger = np.kron(shot[100:300, 100:300], np.ones((2, 2), np.uint8))
+    assert crossings(larger)[0] > 1.5 * crossings(shot)[0]
+    assert crossings(larger)[1] < 0.7 * crossings(shot)[1]
 
 
 def test_the_same_strokes_as_on_paper(page):
@@ -67,22 +86,129 @@ def test_the_same_strokes_as_on_paper(page):
     assert runs == pytest.approx(drawn, rel=0.01)
 
 
-def test_keys_zoom_and_nothing_complains_or_is_fetched(page):
+def view(page: Page) -> list[float]:
+    """Zoom, and the place of the picture's corner."""
+    return page.evaluate("[view.zoom, view.x, view.y]")
+
+
+def press(page: Page, key: str, **more: Any) -> None:
+    for kind in ("keyDown", "keyUp"):
+        page.call("Input.dispatchKeyEvent", type=kind, key=key, **more)
+
+
+def test_keys_zoom_and_move(page):
+    page.evaluate("(fit(), canvas.focus())")
+    press(page, "+", text="+")
+    press(page, "+", text="+")
+    zoom, x, y = view(page)
+    assert zoom == pytest.approx(2.25)
+    press(page, "ArrowRight")
+    press(page, "ArrowUp")
+    assert view(page) == pytest.approx([2.25, x - 80, y + 80])
+    press(page, "-", text="-")
+    assert view(page)[0] == pytest.approx(1.5)
+    press(page, "0", text="0")
+    assert view(page)[0] == 1
+    before = page.evaluate("painted.count")
+    press(page, "+", text="+")
+    page.until(f"painted.count > {before}")  # and is drawn anew
+    assert page.evaluate("document.querySelector('output').value") == "1.5×"
+
+
+def test_buttons_are_reached_by_tab_and_named(page):
+    page.evaluate("document.querySelector('[value=s]').focus()")
+    names = []
+    while "Save SVG" not in names and len(names) < 12:  # from the last on around: past the window itself
+        press(page, "Tab", code="Tab", windowsVirtualKeyCode=9)
+        focused = "document.activeElement"
+        name = page.evaluate(f"{focused} === document.body ? '' : {focused}.ariaLabel || {focused}.textContent")
+        names += [name] if name else []
+    assert names[0].startswith("A <disc>, a pen-and-ink illustration")
+    assert names[1:] == ["Zoom in", "Zoom out", "Show all of it", "Print", "Save SVG"]
+    page.evaluate("(fit(), document.querySelector('button').focus())")
+    press(page, "Enter", text="\r", code="Enter", windowsVirtualKeyCode=13)
+    assert view(page)[0] == pytest.approx(1.5)
+
+
+def test_the_wheel_zooms_about_the_pointer(page):
     page.evaluate("fit()")
-    page.evaluate("document.dispatchEvent(new KeyboardEvent('keydown', {key: '+'}))")
-    assert page.evaluate("view.zoom") == pytest.approx(1.5)
-    page.evaluate("document.dispatchEvent(new KeyboardEvent('keydown', {key: '0'}))")
-    assert page.evaluate("view.zoom") == 1
+    _, x, _ = view(page)
+    page.call("Input.dispatchMouseEvent", type="mouseWheel", x=200, y=250, deltaX=0, deltaY=-500)
+    page.until("view.zoom > 2")
+    zoom, now, _ = view(page)
+    assert 200 - now == pytest.approx((200 - x) * zoom, rel=0.01)
+
+
+def test_two_fingers_zoom_and_one_moves(page):
+    page.evaluate("fit()")
+
+    def touch(kind: str, *at: tuple[float, float]) -> None:
+        points = [{"x": x, "y": y, "id": k} for k, (x, y) in enumerate(at)]
+        page.call("Input.dispatchTouchEvent", type=kind, touchPoints=points)
+
+    touch("touchStart", (250, 300), (350, 300))
+    touch("touchMove", (200, 300), (400, 300))
+    touch("touchMove", (150, 300), (450, 300))
+    touch("touchEnd")
+    page.until("view.zoom > 2.5")
+    zoom, x, y = view(page)
+    assert zoom == pytest.approx(3, rel=0.02)
+    touch("touchStart", (300, 300))
+    touch("touchMove", (330, 320))
+    touch("touchEnd")
+    page.until(f"view.x > {x} + 20")
+    assert view(page) == pytest.approx([zoom, x + 30, y + 20], abs=1)
+
+
+def test_after_a_move_fresh_strokes_are_drawn(page):
+    page.evaluate("fit()")
+    before = page.evaluate("painted.count")
+    press(page, "+", text="+")
+    page.until(f"painted.count > {before} && canvas.style.transform === ''")
+    shown = page.screenshot()[100:500, 100:500]
+    page.evaluate("repaint()")
+    assert np.array_equal(shown, page.screenshot()[100:500, 100:500])
+
+
+def test_it_prints_strokes_at_the_printers_resolution(page, tmp_path):
+    page.evaluate("(view.zoom = 4, repaint())")  # the whole is printed, whatever is seen
+    pdf = tmp_path / "page.pdf"
+    inches = {"marginTop": 0, "marginBottom": 0, "marginLeft": 0, "marginRight": 0, "paperWidth": 4, "paperHeight": 4}
+    pdf.write_bytes(base64.b64decode(page.call("Page.printToPDF", **inches)["data"]))
+    images = subprocess.run(["pdfimages", "-list", pdf], capture_output=True, text=True, check=True).stdout
+    assert images.count("\n") == 2  # a head of two lines, and none
+    out = tmp_path / "printed.pgm"
+    subprocess.run(["gs", "-q", "-dBATCH", "-dNOPAUSE", "-r600", "-sDEVICE=pgmraw", "-dLastPage=1",
+                    f"-sOutputFile={out}", pdf], check=True)  # fmt: skip
+    paper = np.asarray(Image.open(out))
+    wanted = expected_tone(illustration().layers[0], 108, 108).mean() / 255
+    rows, columns = np.nonzero(paper < 128)
+    assert np.ptp(columns) == pytest.approx(900, abs=6) and np.ptp(rows) == pytest.approx(900, abs=6)
+    cut = paper[rows.min() : rows.max() + 1, columns.min() : columns.max() + 1]
+    assert 1 - cut.mean() / 255 == pytest.approx(wanted, abs=0.02)
+    assert page.evaluate("document.querySelector('#paper').children.length") == 0  # gone after it
+
+
+def test_it_saves_what_is_seen_as_svg(page, tmp_path):
+    page.call("Browser.setDownloadBehavior", behavior="allow", downloadPath=str(tmp_path))
+    page.evaluate("(view.zoom = 4, view.x = view.y = -500, repaint(), document.querySelector('[value=s]').click())")
+    files: list[Path] = []
+    while not (files := list(tmp_path.glob("*.svg"))):
+        page.until("true")
+    root = ElementTree.parse(files[0]).getroot()
+    assert root.attrib["viewBox"] == "250.00 250.00 300.00 300.00"  # 600 pixels of two a unit
+    out = subprocess.run(["rsvg-convert", "-d", "192", "-p", "192", files[0]], capture_output=True, check=True).stdout
+    drawn = np.asarray(Image.open(io.BytesIO(out)).convert("LA"))
+    saved = 255 - (255 - drawn[..., 0].astype(int)) * drawn[..., 1] // 255
+    scaled = Image.fromarray(saved.astype(np.uint8)).resize((600, 600), Image.Resampling.BOX)
+    off = gaussian_filter(np.asarray(scaled, float), 2) - gaussian_filter(page.screenshot().astype(float), 2)
+    assert np.abs(off[20:500, 20:400]).mean() < 6
+
+
+def test_nothing_complains_or_is_fetched(page):
     assert page.console == []
-    assert len(page.requests) == 1 and page.requests[0].startswith("file:")
-
-
-def test_printing_and_saving_are_vectors(page):
-    page.evaluate("window.dispatchEvent(new Event('beforeprint'))")
-    assert page.evaluate("document.querySelector('#paper svg').getAttribute('width')") == "108.00pt"
-    page.evaluate("window.dispatchEvent(new Event('afterprint'))")
-    assert page.evaluate("document.querySelector('#paper').children.length") == 0
-    assert page.evaluate("svg(108, [0, 0, 108, 108], 0)").startswith("<svg xmlns=")
+    assert [url for url in page.requests if not url.startswith("blob:")] == page.requests[:1]
+    assert page.requests[0].startswith("file:")
 
 
 def test_titles_are_escaped():

@@ -5,7 +5,7 @@ const PRINTER = 72 / 600;                                     // what a printer 
 const MOST = 64;                                              // greatest magnification
 const canvas = document.querySelector("canvas"), status = document.querySelector("output");
 const view = {zoom: 1, x: 0, y: 0};                           // x, y: of the picture's corner, CSS pixels
-let layers = [], size = [1, 1], image = null, shown = null, due = 0, painted = {ms: 0, strokes: 0};
+let layers = [], size = [1, 1], image = null, shown = null, due = 0, painted = {ms: 0, strokes: 0, count: 0};
 
 // How large the picture is at zoom 1: it fits the window.
 const fitted = () => Math.min(canvas.clientWidth / size[0], canvas.clientHeight / size[1]) * 0.96;
@@ -52,7 +52,7 @@ function repaint() {
   canvas.style.transform = "";
   canvas.getContext("2d").putImageData(image, 0, 0);
   shown = {x: view.x, y: view.y, scale: scale()};
-  painted = {ms: performance.now() - began, strokes};
+  painted = {ms: performance.now() - began, strokes, count: painted.count + 1};
   status.value = `${view.zoom.toFixed(view.zoom < 10 ? 1 : 0)}×`;
 }
 
@@ -98,7 +98,8 @@ function listen() {
   const frame = canvas.parentElement;
   frame.addEventListener("wheel", event => {
     event.preventDefault();
-    zoomAt(Math.exp(-event.deltaY * (event.deltaMode ? 0.05 : 0.0015) * (event.ctrlKey ? 4 : 1)), event.offsetX, event.offsetY);
+    const box = frame.getBoundingClientRect();                // not offsetX: the canvas may be stretched until it is drawn anew
+    zoomAt(Math.exp(-event.deltaY * (event.deltaMode ? 0.05 : 0.0015) * (event.ctrlKey ? 4 : 1)), event.clientX - box.left, event.clientY - box.top);
   }, {passive: false});
   frame.addEventListener("pointerdown", event => { fingers.set(event.pointerId, [event.clientX, event.clientY]); frame.setPointerCapture(event.pointerId); });
   for (const over of ["pointerup", "pointercancel"]) frame.addEventListener(over, event => fingers.delete(event.pointerId));
