@@ -219,8 +219,8 @@ def page(folder: Path) -> None:
         "(() => {%s; const began = performance.now(); repaint(); canvas.getContext('2d').getImageData(0, 0, 1, 1);"
         "return performance.now() - began})()"
     )
-    print("  medians of 9, ms that passed and (processor, of all the browser's threads); strokes' width in pixels and how")
-    print("  many are crossed an inch of 96, at a tone of 30 %, measured on screenshots of a place of middle tone")
+    print("  medians of 9, ms that passed and (processor, all the browser's threads); strokes' width in pixels, and")
+    print("  how many are crossed in 96 pixels at a tone of 30 %, measured on screenshots of a place of middle tone")
     for photo in ("camera", "coins"):
         path = folder / "page.html"
         path.write_bytes(html.write(picture(photo), photo))
@@ -243,7 +243,7 @@ def page(folder: Path) -> None:
                 there = f"view.x = 512 - {x} * size[0] * scale(), view.y = 512 - {y} * size[1] * scale()"
                 shown.evaluate(f"(view.zoom = {zoom}, {there}, repaint())")
                 width, density, patches = crossings(shown.screenshot()[:960])
-                strokes = f"strokes {width:.2f} wide, {96 * density:.1f} an inch ({patches} patches)"
+                strokes = f"strokes {width:.2f} wide, {96 * density:.1f} crossed ({patches} patches)"
                 print(f"  {photo}, 1024 x 1024, zoom {zoom}: repaint {same} the same view, {moved} moved,"
                       f" {fresh} zoomed; {strokes}", flush=True)  # fmt: skip
             console = [line for line in shown.console if "willReadFrequently" not in line]

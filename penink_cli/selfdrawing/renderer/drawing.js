@@ -151,6 +151,7 @@ class Sheet {
       const long = strokes[o], u0 = strokes[o + 1], u1 = strokes[o + 2], u2 = strokes[o + 3], u3 = strokes[o + 4];
       const v0 = strokes[o + 5], v1 = strokes[o + 6], v2 = strokes[o + 7], v3 = strokes[o + 8], limit = strokes[o + 9], line = strokes[o + 11];
       const steps = clamp(Math.ceil(long / 1.5), 1, 4094), step = long / steps, reach = long / 2 + away, row = 64 * line;
+      const p1 = u1 / steps, p2 = u2 / steps / steps, p3 = u3 / steps / steps / steps, q1 = v1 / steps, q2 = v2 / steps / steps, q3 = v3 / steps / steps / steps;
       const lastA = Math.ceil((highU - u0 + long) / tileU), lastB = Math.ceil((highV - v0 + long) / tileV);
       for (let a = Math.floor((lowU - u0 - long) / tileU); a <= lastA; a++) for (let b = Math.floor((lowV - v0 - long) / tileV); b <= lastB; b++) {
         const du = u0 + a * tileU, dv = v0 + b * tileV;
@@ -164,8 +165,8 @@ class Sheet {
         if (!dark) continue;
         let aside = 0, above = 0, total = 0;
         for (let i = 0; i <= steps; i++) {
-          const t = i / steps, u = du + t * (u1 + t * (u2 + t * u3));
-          let v = dv + t * (v1 + t * (v2 + t * v3)) + aside;
+          const u = du + i * (p1 + i * (p2 + i * p3));
+          let v = dv + i * (q1 + i * (q2 + i * q3)) + aside;
           if (line >= 0) {
             const w = v;
             v += 0.3 * SINE[(0.09 * u + 0.03 * w) * STEPS & TURN - 1] + 0.2 * SINE[(0.21 * u - 0.05 * w) * STEPS & TURN - 1];
@@ -185,6 +186,7 @@ class Sheet {
         }
         if (whole) { if (total > 0) this.run(0, steps, 0, steps, step, screen, strokes[o + 10], ink, paint); continue; }
         if (!above) continue;
+        if (above > steps) { this.run(0, steps, 0, steps, step, screen, strokes[o + 10], ink, paint); continue; }
         let begins = -1, ends = -1, peak = 0;
         for (let i = 0; i <= steps + 1; i++) {
           if (i <= steps && depth[i] > 0) {

@@ -27,6 +27,8 @@ class Raster {
     for (let i = from; i <= upto; i++) {
       const middle = b + (i - a) * slope, x = i - a, stop = Math.min(highest - 1, Math.floor(middle + up));
       for (let j = Math.max(lowest, Math.ceil(middle - up)); j <= stop; j++) {
+        const k = i * over + j * down, was = light[k];
+        if (was < 0.5) continue;                              // black already, as most of a dark place soon is
         const y = j - b, t = x * c + y * d;
         let cover;
         if (t < 0) { if (!first) continue; cover = reach - Math.sqrt(x * x + y * y); }
@@ -34,8 +36,7 @@ class Raster {
         else cover = reach - Math.abs(x * d - y * c);
         if (cover <= 0) continue;
         if (cover > most) cover = most;
-        const k = i * over + j * down, left = 1 - cover;
-        light[k] = solid ? Math.min(light[k], 255 * left) : light[k] * left;
+        light[k] = solid ? Math.min(was, 255 * (1 - cover)) : was * (1 - cover);
       }
     }
   }

@@ -210,10 +210,11 @@ class Picture {
       const most = far(u - cx, v - cy) + 2.4143, bends = [];
       around ||= this.near(this.nodesIn, I, J, 2).length ? this.near(this.edgesIn, I, J, 2) : [];
       if (around.length) for (const [x, y, way, t] of this.paths(u, v)) if (way + far(x - cx, y - cy) < most) {
-        if (!nodes.has(t)) nodes.set(t, {x, y, hidden: this.shadow(around, x, y, cx, cy), at: -1, seen: false});
+        if (!nodes.has(t)) nodes.set(t, {x, y, hidden: this.shadow(around, x, y, cx, cy), at: -1, way: 0, seen: 0});
         const node = nodes.get(t);
         if (node.hidden !== true) bends.push({node, way});
       }
+      bends.sort((a, b) => a.way - b.way);
       taps.push({k, u, v, shadow, bends});
     }
     if (this.squares.size >= MOST_SQUARES) this.squares.clear();
@@ -243,7 +244,7 @@ class Picture {
         for (; from <= upto; from++) hidden[row + from] |= 1 << k;
       }
     }
-    const light = new Float64Array(16).fill(1);
+    const light = new Float64Array(16), losses = new Float64Array(16);
     let num = 0, den = 0;
     const sums = (kx, ky, x, y, all) => {
       num = den = 0;
@@ -259,21 +260,21 @@ class Picture {
       const x = I + fx[p], y = J + Y.f[q], cell = q * wide + p, query = ++this.queries;
       // most cells keep most of their taps: what the others weigh is taken off the sum of all
       let lost = 0, lostInk = 0;
-      light.fill(1);
       for (const {k, u, v, bends} of taps) {
         if (!(away >> k & 1)) continue;
         let least = 1;
         if (bends.length) {
           const straight = far(u - x, v - y);
-          for (const {node, way} of bends) {
-            const detour = way + far(node.x - x, node.y - y) - straight;
-            if (detour >= least) continue;
-            if (node.at !== query) { node.at = query; node.seen = !node.hidden || !anywhere(node.hidden, x, y); }
-            if (node.seen) least = detour;
+          for (const {node, way} of bends) {                  // the nearest to the sample first
+            if (way - straight >= least) break;
+            if (node.at !== query) { node.at = query; node.way = far(node.x - x, node.y - y); node.seen = 0; }
+            if (way + node.way - straight >= least) continue;
+            if (!node.seen) node.seen = node.hidden && anywhere(node.hidden, x, y) ? -1 : 1;
+            if (node.seen > 0) least = way + node.way - straight;
           }
         }
         const loss = smooth(least), weight = X.k[4 * p + (k & 3)] * Y.k[4 * q + (k >> 2)] * loss;
-        light[k] = 1 - loss;
+        losses[k] = loss;
         lost += weight;
         lostInk += weight * value[k];
       }
@@ -281,6 +282,7 @@ class Picture {
       num = plain[cell] - lostInk;
       den = 1 - lost;
       if (den < 0.5) {
+        for (let k = 0; k < 16; k++) light[k] = away >> k & 1 ? 1 - losses[k] : 1;
         sums(X.k, Y.k, 4 * p, 4 * q);
         const share = smooth(den / 0.5), numC = num, denC = den;
         sums(spline(X.f[p]), spline(Y.f[q]), 0, 0);
