@@ -1,11 +1,22 @@
-# penink.mk: pattern rules from any NAME.png, NAME.jpg or NAME.pgm to NAME.ps, .svg, .pdf and .preview.png.
+# penink.mk: pattern rules from any photograph NAME.jpg, NAME.png … to NAME.ps, .svg, .pdf and .preview.png.
 #
-# Include it in a Makefile of your own and ask for NAME.ps, NAME.svg or NAME.pdf. Each stage writes a file, so that make -j
-# works and a changed option remakes only what follows from it:
+# Include it in a Makefile of your own and ask for NAME.ps, NAME.svg or NAME.pdf; $(call penink-photos,FOLDER) is a list of
+# the photographs in a folder, without the pictures that these rules write there:
+#
+#   include samples/penink.mk
+#   BLAST = --texture stipple --width 6in
+#   all: $(addsuffix .ps,$(basename $(call penink-photos,holiday)))
+#
+# The default goal stays what it was. Each stage writes a file, so that make -j works and a changed option remakes only what
+# follows from it:
 #
 #   NAME.edges.json   NAME.samples.pgm   NAME.reduced.pgm   NAME.grey.pgm   NAME.strokes.jsonl   NAME.ps
 #
+# Make takes a space for the end of a name: photographs with spaces in theirs must be renamed, or drawn by the Snakefile.
+#
 # The options of a stage, for all pictures (BLAST = --texture stipple) or for one (BLAST.camera = …):
+
+penink-goal-before := $(.DEFAULT_GOAL)
 
 PENINK  ?= penink
 DETECT  ?=
@@ -17,6 +28,10 @@ TO_PS   ?=
 TO_SVG  ?=
 TO_PDF  ?=
 PREVIEW_DPI ?= 150
+
+PENINK_PHOTOS := png jpg jpeg tif tiff webp pgm ppm PNG JPG JPEG TIF TIFF WEBP PGM PPM
+penink-photos = $(filter-out %.preview.png %.samples.pgm %.reduced.pgm %.grey.pgm,\
+                  $(wildcard $(addprefix $(or $(1),.)/*.,$(PENINK_PHOTOS))))
 
 .DELETE_ON_ERROR:
 .PRECIOUS: %.edges.json %.samples.pgm %.reduced.pgm %.grey.pgm %.strokes.jsonl %.ps %.svg %.pdf
@@ -56,7 +71,7 @@ define penink-photo-rules
 %.reduced.pgm: %.samples.pgm %.$(1) %.edges.json %.reduce.options
 	$$(PENINK) reduce $$(call penink-options,REDUCE) -e $$*.edges.json --photo $$*.$(1) -o $$@ $$<
 endef
-$(foreach ending,png jpg pgm,$(eval $(call penink-photo-rules,$(ending))))
+$(foreach ending,$(PENINK_PHOTOS),$(eval $(call penink-photo-rules,$(ending))))
 
 %.grey.pgm: %.reduced.pgm %.edges.json %.enlarge.options
 	$(PENINK) enlarge $(call penink-options,ENLARGE) -e $*.edges.json -o $@ $<
@@ -75,3 +90,5 @@ $(foreach ending,png jpg pgm,$(eval $(call penink-photo-rules,$(ending))))
 
 %.preview.png: %.ps
 	gs -q -dSAFER -dBATCH -dNOPAUSE -dEPSCrop -dGraphicsAlphaBits=4 -sDEVICE=pnggray -r$(PREVIEW_DPI) -sOutputFile=$@ $<
+
+.DEFAULT_GOAL := $(penink-goal-before)

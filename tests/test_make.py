@@ -59,3 +59,21 @@ def test_a_failed_stage_leaves_no_target_and_names_the_file(folder):
     assert done.returncode != 0
     assert "disc.pgm: truncated" in done.stderr
     assert not list(folder.glob("*.json")) and not list(folder.glob("*.ps"))
+
+
+def test_the_default_goal_stays_the_includer_s(folder):
+    with open(folder / "Makefile", "a") as makefile:
+        makefile.write("ours:\n\t@echo ours was made\n")
+    assert make(folder).stdout == "ours was made\n"
+
+
+def test_every_photograph_of_a_folder_has_a_rule_and_no_stage_file_is_one(folder):
+    with open(folder / "Makefile", "a") as makefile:
+        makefile.write("all: $(addsuffix .ps,$(basename $(call penink-photos,shots)))\n")
+    (folder / "shots").mkdir()
+    photos = ["a.JPG", "b.tif", "c.jpeg", "d.webp", "e.png", "f.pgm", "g.ppm", "h.TIFF"]
+    for name in (*photos, "e.preview.png", "e.samples.pgm", "e.reduced.pgm", "e.grey.pgm", "notes.txt"):
+        (folder / "shots" / name).touch()
+    plan = make(folder, "--dry-run", "all")
+    assert plan.returncode == 0, plan.stderr
+    assert {f"shots/{name[0]}.ps" for name in photos} == {t for t in remade(plan) if t.endswith(".ps")}
