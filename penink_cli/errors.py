@@ -48,6 +48,15 @@ class StreamError(PeninkError, OSError):
     """A file could not be opened, read or written."""
 
 
+def in_quotes(text: str, limit: int = 60) -> str:
+    """Text as it was found, for an error line: printable, cut, in quotes, each backslash once.
+
+    >>> print(in_quotes("hello\\n"))
+    'hello\\n'
+    """
+    return f"'{printable(text, limit)}'"
+
+
 def printable(text: str, limit: int | None = None) -> str:
     """Escape what a terminal would not show as one line of text, and cut quoted input at ``limit`` characters.
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from penink_cli.errors import ParameterError, printable
+from penink_cli.errors import ParameterError, in_quotes
 from penink_cli.options import LENGTH, Finite, Length
 from penink_cli.papers import paper_size
 from penink_cli.streams import reading, source_name
@@ -36,7 +36,7 @@ class Colour(click.ParamType):
         if re.fullmatch("[0-9a-f]{3}", code):
             code = "".join(c + c for c in code)
         if not re.fullmatch("[0-9a-f]{6}", code):
-            self.fail(f"{printable(value, 60)!r} is not #rrggbb or one of {', '.join(NAMED)}", param, ctx)
+            self.fail(f"{in_quotes(value)} is not #rrggbb or one of {', '.join(NAMED)}", param, ctx)
         return tuple(int(code[i : i + 2], 16) / 255 for i in (0, 2, 4))
 
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 import contextlib
 import importlib
 import os
+import re
 import sys
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
@@ -45,6 +46,8 @@ SUBCOMMANDS = {
     "to-png": ("to_png", "Draw strokes into a PNG image, by the area that ink covers."),
     "completion": ("completion", "Print what makes a shell complete penink's words."),
 }
+# The subcommands of subcommands, which error lines name too.
+PARTS = {"texture": ("list", "show", "make", "import")}
 
 
 class LazyGroup(click.Group):
@@ -124,12 +127,15 @@ def _run(arguments: Sequence[str]) -> int:
     path = "penink"
     if arguments and arguments[0] in SUBCOMMANDS:
         path = f"penink {arguments[0]}"
+        if arguments[1:] and arguments[1] in PARTS.get(arguments[0], ()):
+            path += f" {arguments[1]}"
     try:
         result = penink.main(args=list(arguments), prog_name="penink", standalone_mode=False)
         streams.flush_text()
         return result if isinstance(result, int) else 0
     except click.UsageError as error:
-        _complain(path, f"{error.format_message()} (see {path} --help)".replace("\n", " "))
+        line = re.sub(r"\s*\n\s*", " ", error.format_message())  # click lists the choices on lines of their own
+        _complain(path, f"{line} (see {path} --help)")
         return 2
     except click.exceptions.Exit as stop:
         return stop.exit_code

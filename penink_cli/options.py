@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 
 import click
 
-from penink_cli.errors import ParameterError, printable
+from penink_cli.errors import ParameterError, in_quotes
 from penink_cli.units import parse_length
 
 F = TypeVar("F", bound=Callable[..., Any])
@@ -48,7 +48,7 @@ class Size(click.ParamType):
             return value
         parts = value.lower().split("x")
         if len(parts) != 2 or not all(p.isascii() and p.isdigit() and len(p) < 10 and int(p) > 0 for p in parts):
-            self.fail(f"{printable(value, 60)!r} is not a size such as 640x480", param, ctx)
+            self.fail(f"{in_quotes(value)} is not a size such as 640x480", param, ctx)
         return int(parts[0]), int(parts[1])
 
 
@@ -65,7 +65,7 @@ class Window(click.ParamType):
             return value
         parts = value.split(",")
         if len(parts) != 4 or not all(p.isascii() and p.isdigit() and len(p) < 10 for p in parts):
-            self.fail(f"{printable(value, 60)!r} is not a window such as 0,0,640,480", param, ctx)
+            self.fail(f"{in_quotes(value)} is not a window such as 0,0,640,480", param, ctx)
         x, y, width, height = (int(p) for p in parts)
         if not width or not height:
             self.fail("the window is empty", param, ctx)
@@ -90,8 +90,7 @@ class Finite(click.ParamType):
             low = f"above {self.above:g}" if self.above > -math.inf else f"from {self.least:g}"
             high = f" to {self.most:g}" if self.most < math.inf else ""
             bounded = self.above > -math.inf or self.least > -math.inf
-            found = printable(str(value), 60)
-            self.fail(f"{found!r} is not a number{f' {low}{high}' if bounded else high}", param, ctx)
+            self.fail(f"{in_quotes(str(value))} is not a number{f' {low}{high}' if bounded else high}", param, ctx)
         return number
 
 

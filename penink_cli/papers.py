@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from penink_cli.errors import ParameterError, printable
+from penink_cli.errors import ParameterError, in_quotes
 from penink_cli.units import parse_length
 
 _MM = 72 / 25.4
@@ -32,7 +32,7 @@ def paper_size(name: str) -> tuple[float, float]:
 
     near = difflib.get_close_matches(name.lower(), PAPERS, n=1, cutoff=0.6)
     hint = f"did you mean {near[0]}?" if near else f"known are {', '.join(PAPERS)} and sizes such as 210mmx297mm"
-    raise ParameterError(f"no paper {printable(name, 60)!r}; {hint}")
+    raise ParameterError(f"no paper {in_quotes(name)}; {hint}")
 
 
 def check_sheet(width_pt: float, height_pt: float) -> None:

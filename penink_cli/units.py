@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 
-from penink_cli.errors import ParameterError, printable
+from penink_cli.errors import ParameterError, in_quotes
 
 POINTS = {"": 1.0, "pt": 1.0, "mm": 72 / 25.4, "cm": 720 / 25.4, "in": 72.0}
 
@@ -24,11 +24,11 @@ def parse_length(text: str, dpi: float | None = None) -> float:
     """
     match = _LENGTH.fullmatch(text.strip())
     if not match:
-        raise ParameterError(f"{printable(text, 60)!r} is not a length such as 4in, 100mm, 10cm or 288pt")
+        raise ParameterError(f"{in_quotes(text)} is not a length such as 4in, 100mm, 10cm or 288pt")
     number, unit = match.groups()
     if unit == "px" and dpi is None:
-        raise ParameterError(f"{printable(text, 60)!r}: px needs a resolution")
+        raise ParameterError(f"{in_quotes(text)}: px needs a resolution")
     points = float(number) * (72.0 / dpi if unit == "px" and dpi is not None else POINTS[unit])
     if not math.isfinite(points):
-        raise ParameterError(f"{printable(text, 60)!r} is out of range")
+        raise ParameterError(f"{in_quotes(text)} is out of range")
     return points

@@ -12,7 +12,7 @@ import click
 import pytest
 
 from penink_cli import errors, options, units
-from penink_cli.main import SUBCOMMANDS
+from penink_cli.main import PARTS, SUBCOMMANDS
 from tests.conftest import ROOT, environment
 
 
@@ -63,6 +63,10 @@ def test_version(penink):
         (["enlarge", "--scale", "nan"], "not a number above 0"),
         (["enlarge", "--size", "4x0"], "not a size"),
         (["blast", "--width", "4parsec"], "not a length"),
+        (["blast", "--width", "4\nin"], "'4\\nin' is not a length"),
+        (["separate", "--grey", "0.2"], "'0.2' is not a range of grey such as 0,0.5"),
+        (["separate", "--point", "7"], "'7' is not a point such as"),
+        (["completion"], "Choose from: bash, zsh, fish (see"),
     ],
 )
 def test_wrong_usage_is_one_line_and_status_2(arguments, complaint, penink):
@@ -90,6 +94,26 @@ def test_the_program_s_name_is_red_on_a_terminal_only(environ, red):
     os.close(ours)
     name = "\x1b[1;31mpenink reduce:\x1b[0m" if red else "penink reduce:"
     assert line == f"{name} no-such.pgm: No such file or directory\r\n"
+
+
+def test_an_error_line_names_the_subcommand_of_a_subcommand(penink):
+    done = penink("texture", "import", input=b"hello\n")
+    assert done.returncode == 1 and done.stderr.startswith(b"penink texture import: <stdin>: not SVG")
+    done = penink("texture", "show", "--nme")
+    assert done.returncode == 2 and done.stderr.startswith(b"penink texture show: ")
+    assert b"(see penink texture show --help)" in done.stderr
+
+
+def test_the_table_of_subcommands_of_subcommands_is_whole():
+    for name, (module, _) in SUBCOMMANDS.items():
+        command = getattr(importlib.import_module(f"penink_cli.commands.{module}"), module)
+        parts = tuple(command.commands) if isinstance(command, click.Group) else ()
+        assert PARTS.get(name, ()) == parts
+
+
+def test_a_backslash_is_shown_once(penink):
+    done = penink("reduce", "--factor", "2", input=b"\n\n")
+    assert done.stderr == b"penink reduce: <stdin>: not a PGM image: begins with '\\n\\n', not P2 or P5\n"
 
 
 def test_lengths_are_points_and_know_their_units():

@@ -7,6 +7,7 @@ from typing import Any
 import click
 
 from penink_cli.commands.inputs import read_edges
+from penink_cli.errors import in_quotes
 from penink_cli.options import LENGTH, Finite, filter_options
 from penink_cli.streams import writing
 
@@ -21,10 +22,11 @@ class Point(click.ParamType):
         if isinstance(value, tuple):
             return value
         number = Finite()
-        parts = [number.convert(part, param, ctx) for part in value.split(",")]
+        parts = value.split(",")
         if len(parts) != 2:
-            self.fail(f"{value!r} is not a point such as 120,85.5", param, ctx)
-        return parts[0], parts[1]
+            self.fail(f"{in_quotes(value)} is not a point such as 120,85.5", param, ctx)
+        x, y = (number.convert(part, param, ctx) for part in parts)
+        return x, y
 
 
 @click.command(name="outline")

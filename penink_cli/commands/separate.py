@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import click
 
 from penink_cli.commands.inputs import only_one_standard_input, read_edges, read_photo
 from penink_cli.commands.outline import Point
+from penink_cli.errors import in_quotes
 from penink_cli.options import edges_option, filter_options
 from penink_cli.streams import writing
 
@@ -19,9 +21,15 @@ class Range(click.ParamType):
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> tuple[float, float]:
         """(low, high)."""
-        low, high = Point().convert(value, param, ctx)
+        if isinstance(value, tuple):
+            return value
+        parts = value.split(",")
+        try:
+            low, high = map(float, parts)
+        except ValueError:
+            low = high = math.nan
         if not 0 <= low < high <= 1:
-            self.fail(f"{value!r} is not a range of grey such as 0,0.5", param, ctx)
+            self.fail(f"{in_quotes(value)} is not a range of grey such as 0,0.5", param, ctx)
         return low, high
 
 

@@ -61,10 +61,12 @@ def read(stream: BinaryIO, source: str, max_pixels: int = 0) -> EdgeList:
         found = _plain(text)
         if found is None:
             found = _edge_list(strict_json.loads(text, source))
-        del text
+        text = text[:0]  # room for what follows
         check(found)
     except FormatError as error:
-        raise error.from_source(source) from None
+        from penink_cli.formats.recognise import explained
+
+        raise explained(error, text, "edges").from_source(source) from None
     return found
 
 

@@ -45,9 +45,9 @@ def read(text: bytes, source: str, fetch: Fetch, shipped: Shipped, max_pixels: i
     Edges are sound each by itself; that they cross nowhere is for geometry to check. Raises FormatError, which
     names the layer and member, and LimitError.
     """
-    if len(text) > MAX_BYTES:
-        raise LimitError(f"a manifest of more than {MAX_BYTES} bytes", source)
     try:
+        if len(text) > MAX_BYTES:
+            raise LimitError(f"a manifest of more than {MAX_BYTES} bytes")
         document = strict_json.header(strict_json.loads(text), FORMAT)
         width, height = (_length(document, side, MAX_SIZE) for side in ("width", "height"))
         items = strict_json.array(strict_json.member(document, "layers"), "layers")
@@ -61,7 +61,9 @@ def read(text: bytes, source: str, fetch: Fetch, shipped: Shipped, max_pixels: i
             layers.append(_layer(item, f"layer {i}", fetch, shipped, left))
             left -= layers[-1].samples.values.size
     except PeninkError as error:
-        raise error.from_source(source) from None
+        from penink_cli.formats.recognise import explained
+
+        raise explained(error, text, "illustration").from_source(source) from None
     return Illustration(width, height, tuple(layers))
 
 

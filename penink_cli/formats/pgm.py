@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, BinaryIO
 import numpy as np
 import numpy.typing as npt
 
-from penink_cli.errors import FormatError, LimitError, printable
+from penink_cli.errors import FormatError, LimitError, in_quotes
 from penink_cli.model import GreyImage
 
 if TYPE_CHECKING:
@@ -38,7 +38,11 @@ def read(stream: BinaryIO, source: str, max_pixels: int) -> GreyImage:
     """
     magic = stream.read(2)
     if magic not in (b"P2", b"P5"):
-        raise FormatError(f"not a PGM image: begins with {_shown(magic)}, not P2 or P5", source)
+        from penink_cli.formats.recognise import ENOUGH, explained
+
+        shown = f"begins with {_shown(magic)}, not P2 or P5" if magic else "it is empty"
+        unknown = FormatError(f"not a PGM image: {shown}", source)
+        raise explained(unknown, magic + stream.read1(ENOUGH), "pgm")  # type: ignore[attr-defined]
     values, maxval = read_raster(stream, source, max_pixels, magic)
     return GreyImage(values, maxval)
 
@@ -71,7 +75,7 @@ def check_size(width: int, height: int, max_pixels: int, source: str | None = No
 
 
 def _shown(found: bytes) -> str:
-    return repr(printable(found.decode("latin-1"), 60)) if found else "nothing: it is empty"
+    return in_quotes(found.decode("latin-1"))
 
 
 def _header(stream: BinaryIO, source: str) -> tuple[int, int, int]:

@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Any, BinaryIO
 import numpy as np
 import numpy.typing as npt
 
-from penink_cli.errors import FormatError, LimitError, PeninkError, printable
+from penink_cli.errors import FormatError, LimitError, PeninkError, in_quotes, printable
 from penink_cli.formats import damage, pgm
 from penink_cli.model import GreyImage
 
@@ -59,8 +59,11 @@ def read_grey(stream: BinaryIO, source: str, max_pixels: int) -> GreyImage:
     start = magic + stream.read(14)
     kind = next((name for signature, name in SIGNATURES if start.startswith(signature)), None)
     if kind is None or (kind == "WEBP" and start[8:12] != b"WEBP"):
-        shown = f"begins with {printable(start[:8].decode('latin-1'))!r}" if start else "it is empty"
-        raise FormatError(f"not a PGM, PPM, PNG, JPEG, TIFF or WebP photograph: {shown}", source)
+        from penink_cli.formats.recognise import ENOUGH, explained
+
+        shown = f"begins with {in_quotes(start[:8].decode('latin-1'))}" if start else "it is empty"
+        unknown = FormatError(f"not a PGM, PPM, PNG, JPEG, TIFF or WebP photograph: {shown}", source)
+        raise explained(unknown, start + stream.read1(ENOUGH), "photo")  # type: ignore[attr-defined]
     try:
         return _decoded(_whole(start, stream, kind, max_pixels), kind, max_pixels)
     except PeninkError as error:

@@ -53,7 +53,12 @@ def _read(stream: BinaryIO) -> Strokes:
         start = 0
         if header is None:
             start = text.index(b"\n") + 1
-            header = _header(text[: start - 1])
+            try:
+                header = _header(text[: start - 1])
+            except FormatError as error:
+                from penink_cli.formats.recognise import explained
+
+                raise explained(error, text, "strokes") from None
             line_number = 1
         # A point takes at least 6 bytes and a stroke 28, so nothing that is parsed can overflow these.
         block_points = np.empty(((len(text) - start) // 6 + 2, 2))

@@ -31,7 +31,9 @@ def read(stream: BinaryIO, source: str, name: str, pen_pt: float | None = None, 
             raise FormatError(f"larger than {MAX_BYTES} bytes")
         return _texture(_parse(text), name, pen_pt, whole)
     except FormatError as error:
-        raise error.from_source(source) from None
+        from penink_cli.formats.recognise import explained
+
+        raise explained(error, text, "svg").from_source(source) from None
 
 
 def _parse(text: bytes) -> Any:

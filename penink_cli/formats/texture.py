@@ -40,13 +40,15 @@ _NEEDED = ("angle", "from", "to", "pen")
 
 def read(stream: BinaryIO, source: str) -> Texture:
     """Read a texture; raises FormatError that names the stroke or layer at fault."""
+    text = stream.read(MAX_BYTES + 1)
     try:
-        text = stream.read(MAX_BYTES + 1)
         if len(text) > MAX_BYTES:
             raise FormatError(f"larger than {MAX_BYTES} bytes")
         return _texture(strict_json.header(strict_json.loads(text), "penink-texture"))
     except FormatError as error:
-        raise error.from_source(source) from None
+        from penink_cli.formats.recognise import explained
+
+        raise explained(error, text, "texture").from_source(source) from None
 
 
 def _texture(document: dict[str, Any]) -> Texture:

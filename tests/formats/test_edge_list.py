@@ -59,7 +59,8 @@ ACCEPTED = {
 REFUSED = {
     "an array": ([], "an object is expected"),
     "null": (None, "an object is expected"),
-    "strokes": (changed(format="penink-strokes"), 'format is "penink-strokes"; "penink-edges" is expected'),
+    "strokes": (changed(format="penink-strokes"), "not an edge list but strokes"),
+    "another's": (changed(format="theirs"), 'format is "theirs"; "penink-edges" is expected'),
     "no format": (without("format"), '"format" is missing'),
     "format in capitals": (changed(format="PENINK-EDGES"), "format is"),
     "version 2": (changed(version=2), "version is 2"),
@@ -136,7 +137,7 @@ REFUSED = {
     "a non-breaking space": (json.dumps(GOOD).replace(" ", "\xa0").encode(), "not JSON"),
     "a note beyond a double": (changed(note=10**309), "is out of range"),
     "nothing": (b"", "empty"),
-    "a PGM": (b"P5 1 1 255\n\xff", "not UTF-8"),
+    "a PGM": (b"P5 1 1 255\n\xff", "not an edge list but a PGM image"),
 }
 
 

@@ -81,7 +81,7 @@ REFUSED = {
     "plain, a fraction": (b"P2 2 1 9 1 1.5", "found '.'"),
     "plain, an exponent": (b"P2 2 1 9 1 1e0", "found 'e'"),
     "plain, a letter": (b"P2 2 1 9 1 x", "found 'x'"),
-    "plain, a null": (b"P2 2 1 9 1 2\x00", r"found '\\x00'"),
+    "plain, a null": (b"P2 2 1 9 1 2\x00", r"found '\x00'"),
     "text": (b"hello world\n", "not a PGM"),
     "a PNG": (b"\x89PNG\r\n\x1a\n", "not a PGM"),
     "gzip": (b"\x1f\x8b\x08\x00", "not a PGM"),

@@ -48,7 +48,7 @@ def without(document: dict[str, Any], name: str) -> dict[str, Any]:
 
 TEXTURES = {
     "an array": ([], "an object is expected"),
-    "an edge list": (tile(format="penink-edges"), "format is"),
+    "an edge list": (tile(format="penink-edges"), "not a texture but an edge list"),
     "version true": (tile(version=True), "version is true"),
     "version 1.0": (tile(version=1.0), "version is 1.0"),
     "no name": (without(TEXTURE, "name"), '"name" is missing'),
@@ -93,7 +93,7 @@ TEXTURES = {
 
 ILLUSTRATIONS = {
     "an array": ([], "an object is expected"),
-    "a texture": (page(format="penink-texture"), "format is"),
+    "a texture": (page(format="penink-texture"), "not an illustration but a texture"),
     "version 2": (page(version=2), "version is 2"),
     "no width": (without(ILLUSTRATION, "width"), '"width" is missing'),
     "width 0": (page(width=0), "width is 0"),
@@ -111,7 +111,7 @@ ILLUSTRATIONS = {
     "an absolute path": (layer(samples="/etc/passwd"), "relative to the manifest"),
     "a null in a path": (layer(samples="a\0b"), "relative to the manifest"),
     "edges in place of samples": (layer(samples="a.edges"), 'layer 0: samples "a.edges": not a PGM'),
-    "samples in place of edges": (layer(edges="a"), 'layer 0: edges "a": line 1, column 1'),
+    "samples in place of edges": (layer(edges="a"), 'layer 0: edges "a": not an edge list but a PGM image'),
     "edges null": (layer(edges=None), "layer 0: edges is null"),
     "a texture there is none of": (layer(texture="nonesuch"), "layer 0: "),
     "a texture file that is none": (layer(texture="a.json"), 'layer 0: texture "a.json"'),
