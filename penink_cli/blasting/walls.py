@@ -125,6 +125,15 @@ class Pieces:
     bounded: npt.NDArray[np.uint8]
 
 
+def _lengths(points: Floats, first: Ints) -> Floats:
+    """How long each polyline is: from end to end, but along it where it bends much, as a loop does."""
+    chord = np.sqrt(((points[first[1:] - 1] - points[first[:-1]]) ** 2).sum(axis=1))
+    pieces = np.sqrt((np.diff(points, axis=0, append=points[-1:]) ** 2).sum(axis=1))
+    pieces[first[1:] - 1] = 0.0  # from one polyline to the next
+    along = np.add.reduceat(pieces, first[:-1]) if len(chord) else chord
+    return np.where(along > 1.2 * chord, along, chord)
+
+
 def cut(walls: Walls, lines: curves.Polylines, painted: Floats, slack: tuple[Floats, Floats]) -> Pieces:
     """Cut polylines where they cross walls, less half of what they paint, and leave out what is outside the frame.
 
@@ -153,10 +162,7 @@ def cut(walls: Walls, lines: curves.Polylines, painted: Floats, slack: tuple[Flo
     who, where, sine, inside = who[~again], where[~again], sine[~again], inside[~again]
     # interleave: each curve's start, its crossings, its end
     per = np.bincount(who, minlength=n)
-    step = np.sqrt(
-        (np.diff(points[np.column_stack([lines.first[:-1], lines.first[1:] - 1])], axis=1)[:, 0] ** 2).sum(1)
-    )
-    step = np.maximum(step / np.maximum(count - 1, 1), 1e-6)
+    step = np.maximum(_lengths(points, lines.first) / np.maximum(count - 1, 1), 1e-6)
     margin = inside * np.minimum(0.42 * painted[who] / np.maximum(sine, 0.2), 2 * painted[who]) / step[who]
     begin = curves.starts(per + 2)
     stop, gap, wall = np.zeros(begin[-1]), np.zeros(begin[-1]), np.ones(begin[-1], np.uint8)

@@ -16,6 +16,7 @@ MAX_BYTES = 64 << 20
 MAX_STROKES = 500_000
 POINTS_PER_PIXEL = 0.75  # CSS: 96 pixels to the inch
 USUAL_PEN_PT = 0.4
+CLOSED = 1e-6  # pixels: arcs do not come round to the very digit, and a shape is closed all the same
 
 
 def read(stream: BinaryIO, source: str, name: str, pen_pt: float | None = None, whole: bool = False) -> Texture:
@@ -110,7 +111,7 @@ def _chains(path: Any) -> list[Floats]:
         elif isinstance(segment, svgelements.Arc):
             for cubic in segment.as_cubic_curves():
                 chains[-1] += [(p.x, p.y) for p in (cubic.control1, cubic.control2, cubic.end)]
-        elif here != (end.x, end.y):
+        elif max(abs(start.x - end.x), abs(start.y - end.y)) > CLOSED:
             chains[-1] += [
                 (start.x + (end.x - start.x) * t, start.y + (end.y - start.y) * t) for t in (1 / 3, 2 / 3)
             ] + [(end.x, end.y)]

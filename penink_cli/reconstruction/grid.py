@@ -3,6 +3,9 @@
 A grid serves if its samples, reconstructed and seen through the camera, differ from the photo by no
 more than a given error, and if every region that edges enclose holds a sample. The error falls as
 the grid grows, which halving the interval exploits; regions do not behave so, and are tried in turn.
+
+Of a large photo a smaller view is searched: to try one grid at 12 megapixels takes 20 s of processor, and a view of
+one tells as much of a grid of a hundred samples a side. The grid found is then judged by the photo itself.
 """
 
 from __future__ import annotations
@@ -26,8 +29,40 @@ Grey32 = npt.NDArray[np.float32]
 
 MAX_ERROR = 8 / 255
 LEAST_REGION_PX = 16  # pixels of the photo; smaller ones are specks that no stroke can show
+_VIEW_PX = 1_000_000
 _LEAST_SIDE = 32  # samples; below that a cell holds too much of the picture
 _FINER = 1.03  # ratio of neighbouring grids that are tried
+
+
+@dataclass(frozen=True, eq=False)
+class _View:
+    """What grids are judged by: a picture (h, w), its blur in pixels, how many points along an axis make a pixel."""
+
+    picture: Grey32
+    blur: float
+    fine: int
+
+    def smaller(self, most: int) -> _View:
+        """The same of at most so many pixels, more or less, each the mean of those that it covers."""
+        shrink = (self.picture.size / most) ** 0.5
+        if shrink <= 1:
+            return self
+        height, width = (max(1, round(side / shrink)) for side in self.picture.shape)
+        rows = 1 << 9
+        across = [_means(self.picture[top : top + rows], width) for top in range(0, self.picture.shape[0], rows)]
+        picture = _means(np.concatenate(across).T, height).T
+        return _View(np.ascontiguousarray(picture), self.blur / shrink, AREA)
+
+
+def _means(values: Grey32, count: int) -> Grey32:
+    """Means of values (h, w) over `count` equal parts of each row, which need not be whole pixels."""
+    width = values.shape[1]
+    sums = np.zeros((values.shape[0], width + 1))
+    np.cumsum(values, axis=1, out=sums[:, 1:])
+    at = np.linspace(0, width, count + 1)
+    left = np.minimum(at.astype(np.int64), width - 1)
+    upto = sums[:, left] + (at - left) * values[:, left]
+    return (np.diff(upto, axis=1) * (count / width)).astype(np.float32)
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,32 +101,45 @@ def choose_grid(
     """
     height, width = samples.shape
     seen = samples if photo is None else photo
-    blur = 0.0 if photo is None else camera_blur(seen, edges)
+    exact = _View(seen, 0.0, POINT) if photo is None else _View(seen, camera_blur(seen, edges), AREA)
+    quick = exact.smaller(_VIEW_PX)
     regions = _Regions(edges, *seen.shape)
-    tried: dict[tuple[int, int], Grid] = {}
+    tried: dict[tuple[int, int, bool], Grid] = {}
 
-    def attempt(factor: float) -> Grid:
+    def attempt(factor: float, view: _View) -> Grid:
         size = _size(width, height, factor)
-        if size not in tried:
-            reduced = reduce(samples, edges, *size, photo=photo, fit=fit, blur=blur, threads=threads)
-            error = remaining_error(reduced, edges, seen, blur, AREA if photo is not None else POINT, threads)
-            tried[size] = Grid(reduced, error, regions.without_sample(*size))
+        key = (*size, view is exact)
+        if key not in tried:
+            fit_to = photo if view is exact else view.picture
+            reduced = reduce(samples, edges, *size, photo=fit_to, fit=fit, blur=view.blur, threads=threads)
+            error = remaining_error(reduced, edges, view.picture, view.blur, view.fine, threads)
+            tried[key] = Grid(reduced, error, regions.without_sample(*size))
             report(
                 f"{size[0]} x {size[1]}: error {255 * error:.2f} of 255, "
-                f"{tried[size].empty_regions} regions without a sample"
+                f"{tried[key].empty_regions} regions without a sample"
             )
-        return tried[size]
+        return tried[key]
 
-    fine, coarse = 1.0, max(1.0, min(width, height) / _LEAST_SIDE)
-    while coarse / fine > _FINER and _size(width, height, fine) != _size(width, height, coarse):
-        middle = (fine * coarse) ** 0.5
-        if attempt(middle).error <= max_error:
-            fine = middle
-        else:
-            coarse = middle
-    while fine > 1 and regions.without_sample(*_size(width, height, fine)):
-        fine = max(1.0, fine / _FINER)
-    chosen = attempt(fine)
+    def search(limit: float) -> float:
+        """The largest factor whose error, in the quick view, stays within the limit, with no region empty."""
+        fine, coarse = 1.0, max(1.0, min(width, height) / _LEAST_SIDE)
+        while coarse / fine > _FINER and _size(width, height, fine) != _size(width, height, coarse):
+            middle = (fine * coarse) ** 0.5
+            if attempt(middle, quick).error <= limit:
+                fine = middle
+            else:
+                coarse = middle
+        while fine > 1 and regions.without_sample(*_size(width, height, fine)):
+            fine = max(1.0, fine / _FINER)
+        return fine
+
+    factor = search(max_error)
+    chosen = attempt(factor, exact)
+    while chosen.error > max_error and factor > 1 and quick is not exact:
+        # the photo's noise, most of which a smaller view does not have, leaves that much less to the grid
+        unseen = max(0.0, chosen.error**2 - attempt(factor, quick).error ** 2)
+        factor = max(1.0, min(factor / _FINER, search(max(0.0, max_error**2 - unseen) ** 0.5)))
+        chosen = attempt(factor, exact)
     if chosen.error > max_error:
         raise ParameterError(f"even {width} x {height} samples leave an error of {255 * chosen.error:.2f} of 255")
     return chosen

@@ -5,6 +5,7 @@ import pytest
 
 from penink_cli.errors import ParameterError
 from penink_cli.model import EdgeList
+from penink_cli.reconstruction import grid
 from penink_cli.reconstruction.grid import choose_grid
 
 
@@ -23,6 +24,28 @@ def test_the_error_is_kept_and_reported():
     lines = []
     chosen = choose_grid(picture(), EdgeList(96, 96), 0.1 / 255, report=lines.append)
     assert chosen.error <= 0.1 / 255 and len(lines) > 2
+
+
+@pytest.mark.parametrize("noise", [0.0, 2 / 255])
+def test_the_grid_of_a_large_photo_is_found_in_a_smaller_view_of_it(noise, monkeypatch):
+    grey = picture(480) + np.random.default_rng(2).normal(0, noise, (480, 480)).astype(np.float32)
+    limit = 2.2 / 255
+    slow = choose_grid(picture(480), EdgeList(480, 480), limit, photo=grey)
+    monkeypatch.setattr(grid, "_VIEW_PX", 20_000)
+    seen = []
+    plain = grid.remaining_error
+    monkeypatch.setattr(grid, "remaining_error", lambda *a: (seen.append(a[2].shape), plain(*a))[1])
+    quick = choose_grid(picture(480), EdgeList(480, 480), limit, photo=grey)
+    assert seen.count((141, 141)) > 4 and 1 <= seen.count((480, 480)) <= 3
+    assert quick.error <= limit and abs(quick.samples.shape[0] / slow.samples.shape[0] - 1) < 0.12
+
+
+def test_means_over_parts_that_are_no_whole_pixels():
+    rng = np.random.default_rng(3)
+    values = rng.random((3, 10)).astype(np.float32)
+    found = grid._means(values, 4)
+    expected = np.repeat(values, 2, axis=1).reshape(3, 4, 5).mean(axis=2)  # two halves a pixel, five a part
+    assert np.allclose(found, expected, atol=1e-6)
 
 
 def test_every_region_gets_a_sample():

@@ -8,6 +8,7 @@ import jsonschema
 import numpy as np
 import pytest
 
+from penink_cli.blasting.blast import blast
 from penink_cli.blasting.reach import reachable
 from penink_cli.blasting.tile import thresholds
 from penink_cli.errors import FormatError, ParameterError
@@ -127,6 +128,18 @@ def test_a_drawing_becomes_a_texture_in_its_own_units():
     ring = found.strokes[3]
     assert np.allclose(np.hypot(*(ring[::3] - (30, 15)).T), 6) and np.allclose(ring[0], ring[-1])
     assert svg_texture.read(io.BytesIO(SVG), "d.svg", "d", pen_pt=1.0).strokes.widths.tolist() == [1.0] * 4
+
+
+@pytest.mark.parametrize("shape", [b'<circle cx="24" cy="12" r="9"/>', b'<rect x="9" y="3" width="30" height="18"/>'])
+@pytest.mark.parametrize("rule", ["best", "strict"])
+def test_closed_shapes_are_drawn_as_others_are(shape, rule):
+    drawing = SVG[: SVG.index(b"<g")] + shape + b"</svg>"
+    found = svg_texture.read(io.BytesIO(drawing), "d.svg", "d")
+    (loop,) = (found.strokes[i] for i in range(len(found.strokes)))
+    assert np.hypot(*np.diff(loop, axis=0).T).min() > 0.1  # and no crumb where it closes
+    drawn = blast(np.full((9, 9), 0.4), 144, 144, None, found, rule=rule, device_dpi=None)
+    ends = drawn.points[drawn.first[:-1]] - drawn.points[drawn.first[1:] - 1]
+    assert np.count_nonzero(np.hypot(*ends.T) < 0.01) >= 4
 
 
 @pytest.mark.parametrize("text", [b"", b"<svg", b"<a/>", b"\xff\xfe", b'<svg xmlns="http://www.w3.org/2000/svg"/>'])
