@@ -38,7 +38,14 @@ RULES = ("best", "strict", "threshold")
 @click.option("--dpi", type=POSITIVE, metavar="N", help="Size on paper by the samples per inch, instead of --width.")
 @click.option("--pen", type=LENGTH, help="Draw all strokes with one pen of this width.  [default: the texture's]")
 @click.option("--gamma", type=Finite(0.05, 20), default=1.0, metavar="G", help="Tone curve: grey is raised to it.")
-@click.option("--seed", type=click.IntRange(0, 2**63 - 1), default=0, show_default=True, metavar="N", help="A hand.")
+@click.option(
+    "--seed",
+    type=click.IntRange(0, 2**63 - 1),
+    default=0,
+    show_default=True,
+    metavar="N",
+    help="A hand. The threshold rule knows but one.",
+)
 @click.option(
     "--device-dpi",
     type=DeviceDpi(),

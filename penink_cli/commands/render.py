@@ -28,7 +28,14 @@ if TYPE_CHECKING:
     metavar="N|none",
     help="Resolution of the printer, which paints every dot that a stroke touches; none for plotters and screens.",
 )
-@click.option("--seed", type=click.IntRange(0, 2**62), default=0, show_default=True, metavar="N", help="Another hand.")
+@click.option(
+    "--seed",
+    type=click.IntRange(0, 2**62),
+    default=0,
+    show_default=True,
+    metavar="N",
+    help="Another hand, but for layers with the threshold rule.",
+)
 @click.option(
     "--layer",
     "chosen",

@@ -40,6 +40,7 @@ def to_ps(
     level: str,
     readable: bool,
     output: str | None,
+    max_pixels: int,
     **_: Any,
 ) -> None:
     """Write strokes as PostScript.
@@ -49,7 +50,8 @@ def to_ps(
     order that makes the file small.
 
     With --self the printer does the work: the small representation itself is written, and a program that draws it with
-    fresh strokes for the size at which it is placed and the device's resolution. For print shops, and for
+    fresh strokes for the size at which it is placed and the device's resolution. They are those of blast's rule
+    "threshold"; the layers' rules and seeds do not matter. For print shops, and for
     whatever converts PostScript to something else first, write strokes.
 
     \b
@@ -57,7 +59,7 @@ def to_ps(
     penink to-ps --paper a4 --margin 15mm photo.strokes.jsonl | lpr
     """
     if self_drawing:
-        write_self_drawing(files, output, "readable" if readable else "flate" if level == "3" else "lzw")
+        write_self_drawing(files, output, "readable" if readable else "flate" if level == "3" else "lzw", max_pixels)
         return
     from functools import partial
 
@@ -75,14 +77,13 @@ def to_ps(
         postscript.write(out, layers, page, colours, compress, order=partial(ordered, improve=False))
 
 
-def write_self_drawing(files: tuple[str, ...], output: str | None, packing: str) -> None:
+def write_self_drawing(files: tuple[str, ...], output: str | None, packing: str, max_pixels: int) -> None:
     """The illustration in the one file given as an EPS that draws itself."""
     from penink_cli.commands.inputs import read_illustration
-    from penink_cli.options import MAX_PIXELS
     from penink_cli.selfdrawing import postscript as selfdrawing
 
     if len(files) > 1:
         raise click.UsageError("--self takes one illustration")
-    program = selfdrawing.write(read_illustration(files[0] if files else None, MAX_PIXELS), packing)
+    program = selfdrawing.write(read_illustration(files[0] if files else None, max_pixels), packing)
     with writing(output) as out:
         out.write(program)

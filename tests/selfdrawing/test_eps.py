@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from dataclasses import replace
 
@@ -164,6 +165,21 @@ def test_a_damaged_illustration_is_refused(tmp_path):
     assert _run(["to-ps", "--self", str(tmp_path / "a.penink"), "-o", str(tmp_path / "a.eps")]) == 1
     assert _run(["to-html", str(tmp_path / "a.penink"), "-o", str(tmp_path / "a.html")]) == 1
     assert not (tmp_path / "a.eps").exists() and not (tmp_path / "a.html").exists()
+
+
+@pytest.mark.parametrize("command", [["to-ps", "--self"], ["to-html"]])
+def test_more_pixels_than_allowed_are_refused(command, tmp_path, capfd):
+    from penink_cli.main import _run
+
+    (tmp_path / "a.pgm").write_bytes(b"P5 40 30 255\n" + bytes(1200))
+    manifest = {"format": "penink-illustration", "version": 1, "width": 72, "height": 54}
+    manifest["layers"] = [{"samples": "a.pgm", "texture": "crosshatch"}]
+    (tmp_path / "a.illustration.json").write_text(json.dumps(manifest))
+    call = [*command, str(tmp_path / "a.illustration.json"), "-o", str(tmp_path / "out")]
+    assert _run([*call, "--max-pixels", "1199"]) == 1
+    assert "declares 40 x 30 pixels; at most 1199" in capfd.readouterr().err
+    assert not (tmp_path / "out").exists()
+    assert _run([*call, "--max-pixels", "1200"]) == 0
 
 
 @pytest.mark.parametrize("size", [0, 1, 700, 9000])
