@@ -140,7 +140,7 @@ def textures(folder: Path) -> None:
     """The other textures."""
     print(HEAD)
     for texture in ("parallel", "crosshatch4", "grain", "stipple", "scribble", "brick", "grass"):
-        for photo in ("camera", "moon"):
+        for photo in ("camera", "coins", "moon"):
             row(photo, 4, 600, folder, texture)
 
 

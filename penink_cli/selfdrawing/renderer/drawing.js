@@ -2,7 +2,7 @@
 // The same steps as texture.ps and drawing.ps, which say why.
 
 const PARTS = [0, 0.5, 0.63, 0.75, 1], COVERS = [0, 0.6912, 0.845, 0.943, 0.995];
-const AROUND = 288, ACROSS = 100, LINES = 256, BLOCK = 9, PATCH = 18, GAP = 3, SHORT = 3, DEEP = 24;
+const AROUND = 288, ACROSS = 100, LINES = 256, BLOCK = 9, PATCH = 18, GAP = 3, SHORT = 3, DEEP = 24, GAIN = 0.12 / 0.54;
 // Blocks around the window that are reconstructed and corrected with it: what lies farther moves no stroke in it visibly.
 const MARGIN = 4;
 
@@ -213,8 +213,9 @@ class Sheet {
       for (let j = begins; j <= ends; j++) {
         const x = px[j], y = py[j], a = Math.floor(x * per) - left, b = Math.floor(y * per) - top, i = Math.min(j, steps - 1);
         if (x < 0 || y < 0 || x >= width || y >= height || a < 0 || b < 0 || a >= across || b >= down) continue;
-        // a wave stretches the way
-        ink[b * across + a] += screen.wave ? each * far(px[i + 1] - px[i], py[i + 1] - py[i]) / step : each;
+        // a wave stretches the way, and a printer widens what slants
+        const dx = px[i + 1] - px[i], dy = py[i + 1] - py[i];
+        ink[b * across + a] += screen.wave ? each * ((1 - GAIN * screen.widens) * far(dx, dy) + GAIN * (Math.abs(dx) + Math.abs(dy))) / step : each;
       }
       return;
     }
