@@ -10,9 +10,8 @@ from cython.cimports.penink_cli.blasting._due import splat
 from cython.cimports.penink_cli.blasting._ink import bar, cell, half_width, stroke
 
 COMPILED = cython.compiled
-#: Lighter than this is paper white; and a place is light. What ink gains there, per cell, that belongs there.
+#: Lighter than this is paper white. What ink gains, per cell, that belongs in a light place.
 PAPER = cython.declare(cython.double, 0.002)
-LIGHT = cython.declare(cython.double, 0.04)
 WORTH = cython.declare(cython.double, 0.05)
 
 
@@ -52,7 +51,7 @@ def _gains(
     lenience: cython.double, enters: cython.double, profile: cython.double[::1],
     points: cython.double[:, ::1], p0: cython.Py_ssize_t, p1: cython.Py_ssize_t,
     ox: cython.double, oy: cython.double, width: cython.double, gain: cython.double,
-    ink: cython.double[::1], own: cython.double[::1], due: cython.double[::1], most: cython.double[::1],
+    ink: cython.double[::1], own: cython.double[::1], due: cython.double[::1], share: cython.double[::1],
 ) -> cython.Py_ssize_t:
     """For each piece of a polyline: new ink (cells), the tone still due there, the tone the stroke itself would add.
 
@@ -91,11 +90,7 @@ def _gains(
         y = 0 if y < 0 else (rows - 1 if y >= rows else y)
         # where part of the kernel is cut off, less is due for the same want of ink: both sides are put at full weight
         due[i] = residual[y, x] / weight[y, x] + lenience * guide[y, x]
-        # where it is light a stroke is darker than what it stands for, as far as the kernel reaches: by the rule of the
-        # least error none would ever be drawn, so one that is known to belong there is worth its ink
-        most[i] = 1e30
-        if due[i] > 0.0 and PAPER < guide[y, x] < LIGHT and guide[y, x] > enters:
-            most[i] = 2.0 * due[i] - WORTH
+        share[i] = guide[y, x] if due[i] > 0.0 and PAPER < guide[y, x] and guide[y, x] > enters else 1e30
         own[i] = 0.0
     # the kernel along the stroke, by distance in quarter cells; pieces are 1/16 … 1 cell or so apart
     for i in range(n):
@@ -108,7 +103,10 @@ def _gains(
                 break
             own[i] += ink[j] * profile[cython.cast(cython.Py_ssize_t, d)]
             own[j] += ink[i] * profile[cython.cast(cython.Py_ssize_t, d)]
-        own[i] = most[i] if most[i] < own[i] else own[i]
+        # where it is light a stroke is darker than what it stands for, as far as the kernel reaches: by the rule of the
+        # least error none would ever be drawn, so one that is known to belong there is worth its ink
+        if share[i] < own[i] and 2.0 * due[i] - WORTH < own[i]:
+            own[i] = 2.0 * due[i] - WORTH
     return n
 
 

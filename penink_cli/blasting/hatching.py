@@ -79,7 +79,7 @@ def hatch_sheet(
     there = np.minimum(sheet.low_pass(sheet.ink) / sheet.weight, np.float32(0.99))
     wanted: Cells = sheet.tone.copy()
     density: Cells = sheet.tone.copy()
-    crowd = in_a_crowd(sheet)
+    crowd = sheet.crowd(SINGLE)
     laid: list[candidates.Candidates] = []
     best: tuple[float, int, list[Strokes]] | None = None
     for turn in range(ROUNDS):
@@ -121,11 +121,6 @@ def hatch_sheet(
     if pen_pt is None and len(drawn):
         drawn = press(sheet, drawn, seed)
     return drawn
-
-
-def in_a_crowd(sheet: Sheet) -> Cells:
-    """How far a stroke in each cell (rows, columns) is one of many that make the tone together, 0 … 1."""
-    return np.minimum(sheet.low_pass(sheet.tone) / sheet.weight * np.float32(1 / SINGLE), np.float32(1))
 
 
 def draw_first(sheet: Sheet, strokes: Strokes) -> None:
@@ -185,7 +180,7 @@ def press(sheet: Sheet, strokes: Strokes, seed: int) -> Strokes:
     # a single line in a light place is no darker than it should be
     middle = lines.points[(lines.first[:-1] + lines.first[1:]) // 2] * (sheet.scale / 8)
     at = np.clip(middle.astype(np.int64), 0, (sheet.columns - 1, sheet.rows - 1))
-    pressure = PRESSURE * in_a_crowd(sheet)[at[:, 1], at[:, 0]].astype(np.float64)
+    pressure = PRESSURE * sheet.crowd(SINGLE)[at[:, 1], at[:, 0]].astype(np.float64)
     for turn in range(PRESSES):
         if turn:
             sheet.clear()

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from penink_cli.blasting import curves, walls
-from penink_cli.blasting.sheet import Cells, Sheet
+from penink_cli.blasting.sheet import SIGMA_PT, Cells, Sheet
 from penink_cli.model import EdgeList, Floats, Ints, Strokes, Texture
 
 #: What a run of ink must gain, in cells × tone.
@@ -23,6 +23,9 @@ CHUNK = 12_000
 #: A stroke is not tried where the tone is lighter by this than where it enters: tiles have holes that only late strokes
 #: fill. Whole strokes lie so evenly that fewer will do.
 SLACK, SLACK_WHOLE = 0.4, 0.15
+#: Less of the error is fed back where the tone is lighter than this part of what one stroke makes: a single stroke is
+#: bound to be too dark where it is and too light beside it.
+SINGLE = 0.7
 #: Lighter than this dots along the frame would look like a line.
 RIM_TONE = 0.6
 
@@ -51,6 +54,20 @@ def thresholds(texture: Texture, gain_pt: float) -> Floats:
     fresh = np.bincount(source, sheet.paint(moved, strokes.widths[source]), len(strokes))
     total = np.cumsum(fresh)
     return (total - fresh) / float(sheet.rows * sheet.columns * 64)
+
+
+def darkness(texture: Texture, gain_pt: float) -> float:
+    """How dark a stroke of the texture is where it is darkest, low-passed: the median of some early ones."""
+    strokes = texture.strokes
+    peaks = []
+    for i in range(min(9, len(strokes))):
+        points = strokes[i] - strokes[i].min(axis=0) + 3 * SIGMA_PT
+        sheet = Sheet(np.zeros((1, 1)), *(points.max(axis=0) + 3 * SIGMA_PT).tolist(), gain_pt)
+        first = np.array([0, len(points)])
+        pieces = curves.pieces_of(points, first, STEP_PT)
+        sheet.paint(curves.sample(points, first, pieces), strokes.widths[i : i + 1])
+        peaks.append(float(sheet.low_pass(sheet.ink).max()))
+    return float(np.median(peaks)) if peaks else 1.0
 
 
 def reach(texture: Texture, gain_pt: float) -> float:
@@ -139,6 +156,7 @@ def blast_tile(
         return _place(sheet, texture, enters, seed, True, pen, frame(sheet, texture, pen))
     borders = frame(sheet, texture, pen, None if texture.whole else edges)
     wanted: Cells = sheet.tone.copy()
+    crowd = sheet.crowd(SINGLE * darkness(texture, sheet.gain_pt))
     best: tuple[float, list[Strokes]] | None = None
     for _ in range(ROUNDS):
         tick()
@@ -149,7 +167,7 @@ def blast_tile(
         size = float(np.mean(np.square(error, dtype=np.float64)))
         if best is None or size < best[0]:
             best = size, strokes
-        wanted = wanted + sheet.spread(error)
+        wanted = wanted + sheet.spread(error) * crowd
     assert best is not None
     return best[1]
 
@@ -199,6 +217,7 @@ def _place(
             walls=bounded,
             strict=strict,
             whole=texture.whole,
+            enters=None if strict else part.enters[cuts.curve],
             cost=0.0 if plain else RUN_COST,
             shifts=(0.0,) if plain else MOVES,
             spacing_pt=np.ones(n),
