@@ -90,7 +90,7 @@ def _gains(
         y = 0 if y < 0 else (rows - 1 if y >= rows else y)
         # where part of the kernel is cut off, less is due for the same want of ink: both sides are put at full weight
         due[i] = residual[y, x] / weight[y, x] + lenience * guide[y, x]
-        share[i] = guide[y, x] if due[i] > 0.0 and PAPER < guide[y, x] and guide[y, x] > enters else 1e30
+        share[i] = guide[y, x] if due[i] > 0.0 and guide[y, x] > PAPER and guide[y, x] > enters else 1e30
         own[i] = 0.0
     # the kernel along the stroke, by distance in quarter cells; pieces are 1/16 … 1 cell or so apart
     for i in range(n):

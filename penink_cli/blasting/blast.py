@@ -68,7 +68,7 @@ def blast(
         if rule == "best" and pen_pt is None and len(strokes):
             sheet.clear()  # the best round may not have been the last
             hatching.paint(sheet, strokes)
-            strokes = hatching.press(sheet, strokes, seed)
+            strokes = hatching.press(sheet, strokes, seed, tile.crowd(sheet, texture))
     tick()
     return replace(strokes, texture=texture.name, seed=seed)
 

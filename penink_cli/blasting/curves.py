@@ -2,6 +2,8 @@
 
 The curves of a set lie one after the other, `points` and `first` as in `model.Strokes`:
 curve i owns points[first[i] : first[i + 1]], 3k + 1 of them, or one for a dot.
+
+This module alone imports the compiled kernel `_curves`.
 """
 
 from __future__ import annotations
@@ -10,10 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from penink_cli.blasting import _curves
 from penink_cli.model import Floats, Ints
-
-#: Samples that are evaluated at a time.
-CHUNK = 16384
 
 
 def ramp(counts: Ints) -> Ints:
@@ -54,17 +54,6 @@ def segments_of(first: Ints) -> Ints:
     return (np.diff(first) - 1) // 3
 
 
-def evaluate(control: Floats, t: Floats) -> Floats:
-    """Points (m, 2) at parameters t (m,) of cubics control (m, 4, 2)."""
-    u = 1.0 - t
-    w = np.stack([u * u * u, 3 * u * u * t, 3 * u * t * t, t * t * t], axis=1)
-    return (
-        w[:, 0, None] * control[:, 0]
-        + w[:, 1, None] * control[:, 1]
-        + (w[:, 2, None] * control[:, 2] + w[:, 3, None] * control[:, 3])
-    )
-
-
 def control_polygons(points: Floats, first: Ints) -> tuple[Floats, Ints]:
     """The cubics (m, 4, 2) of all curves, and the curve (m,) that each belongs to."""
     k = segments_of(first)
@@ -84,23 +73,10 @@ def pieces_of(points: Floats, first: Ints, step: float) -> Ints:
 
 def sample(points: Floats, first: Ints, pieces: Ints) -> Polylines:
     """Each segment's start and inner samples, and the last point of each curve; a dot is one point."""
-    control, owner = control_polygons(points, first)
-    k = segments_of(first)
-    if len(owner) == 0:
-        return Polylines(points[first[:-1]], np.arange(len(k) + 1))
-    seg = np.repeat(np.arange(len(pieces)), pieces)
-    t = ramp(pieces) / pieces[seg]
-    inner = np.empty((len(seg), 2))
-    # so many at a time: the cubics of all samples together are a hundred bytes a sample, and no cache holds them
-    for i in range(0, len(seg), CHUNK):
-        inner[i : i + CHUNK] = evaluate(control[seg[i : i + CHUNK]], t[i : i + CHUNK])
-    per_curve = np.bincount(owner, weights=pieces, minlength=len(k)).astype(np.int64) + 1
-    begin = starts(per_curve)
+    owner = np.repeat(np.arange(len(first) - 1), segments_of(first))
+    begin = starts(np.bincount(owner, weights=pieces, minlength=len(first) - 1).astype(np.int64) + 1)
     out = np.empty((begin[-1], 2))
-    out[begin[1:] - 1] = points[first[1:] - 1]
-    where = np.ones(begin[-1], bool)
-    where[begin[1:] - 1] = False
-    out[where] = inner
+    _curves.sample(np.ascontiguousarray(points), first, pieces, begin, out)
     return Polylines(out, begin)
 
 

@@ -76,16 +76,18 @@ def hatch_sheet(
     finest = pens if pen_pt else [min(pen, max(FINE * pen, FINE_DOTS * gain_pt)) for pen in pens]
     along = thin.strokes_along(sheet, min(pens), min(pens) + gain_pt * 1.27, pen_pt is not None)
     draw_first(sheet, along)
-    there = np.minimum(sheet.low_pass(sheet.ink) / sheet.weight, np.float32(0.99))
+    wide = sheet.low_pass(sheet.tone)
+    drawn_wide = sheet.low_pass(sheet.ink)
+    there = np.minimum(drawn_wide / sheet.weight, np.float32(0.99))
     wanted: Cells = sheet.tone.copy()
     density: Cells = sheet.tone.copy()
-    crowd = sheet.crowd(SINGLE)
+    crowd = sheet.crowd(SINGLE, wide)
     laid: list[candidates.Candidates] = []
     best: tuple[float, int, list[Strokes]] | None = None
     for turn in range(ROUNDS):
         tick()
         if turn < SWEEPS:
-            smooth = (sheet.low_pass(density) / sheet.weight - there) / (1 - there)
+            smooth = ((sheet.low_pass(density) if turn else wide) / sheet.weight - there) / (1 - there)
             smooth = np.clip(smooth, 0.0, 0.995).astype(np.float64)
             around = sheet.spread(sheet.seen(density)).astype(np.float64)
             laid = [
@@ -95,7 +97,10 @@ def hatch_sheet(
                 )
             ]
         sheet.clear()
-        sheet.owe(wanted)
+        if turn:
+            sheet.owe(wanted)
+        else:
+            sheet.residual = wide - drawn_wide
         strokes = [along]
         for part in laid:
             runs, moved = sheet.place(
@@ -119,7 +124,7 @@ def hatch_sheet(
     fine = fine_strokes(sheet, layers, finest, gain_pt, borders, seed)
     drawn = join([drawn, *fine], sheet.width, sheet.height)
     if pen_pt is None and len(drawn):
-        drawn = press(sheet, drawn, seed)
+        drawn = press(sheet, drawn, seed, crowd)
     return drawn
 
 
@@ -171,7 +176,7 @@ def fine_strokes(
     return out
 
 
-def press(sheet: Sheet, strokes: Strokes, seed: int) -> Strokes:
+def press(sheet: Sheet, strokes: Strokes, seed: int, crowd: Cells) -> Strokes:
     """Vary the widths of the strokes on the sheet, as a hand's pressure does, to bring the tone closer."""
     order = np.random.default_rng([seed, 5]).permutation(len(strokes))
     pieces = curves.pieces_of(strokes.points, strokes.first, candidates.STEP_PT)
@@ -180,7 +185,7 @@ def press(sheet: Sheet, strokes: Strokes, seed: int) -> Strokes:
     # a single line in a light place is no darker than it should be
     middle = lines.points[(lines.first[:-1] + lines.first[1:]) // 2] * (sheet.scale / 8)
     at = np.clip(middle.astype(np.int64), 0, (sheet.columns - 1, sheet.rows - 1))
-    pressure = PRESSURE * sheet.crowd(SINGLE)[at[:, 1], at[:, 0]].astype(np.float64)
+    pressure = PRESSURE * crowd[at[:, 1], at[:, 0]].astype(np.float64)
     for turn in range(PRESSES):
         if turn:
             sheet.clear()

@@ -134,12 +134,12 @@ class Sheet:
         """
         return self._gather(halve(values), self._coarse_tone, self._eye) / self._seen_weight
 
-    def crowd(self, single: float) -> Cells:
+    def crowd(self, single: float, wide: Cells) -> Cells:
         """How far the strokes in each cell (rows, columns) are many that make its tone together, 0 … 1.
 
-        single: the tone from which on they are.
+        single: the tone from which on they are. wide: the low-passed tone.
         """
-        return np.minimum(self.low_pass(self.tone) / self.weight * np.float32(1 / single), np.float32(1))
+        return np.minimum(wide / self.weight * np.float32(1 / single), np.float32(1))
 
     def spread(self, error: Cells) -> Cells:
         """Values for cells of twice the size as values (rows, columns)."""

@@ -27,7 +27,7 @@ SLACK, SLACK_WHOLE = 0.4, 0.15
 #: bound to be too dark where it is and too light beside it.
 SINGLE = 0.7
 #: Lighter than this dots along the frame would look like a line.
-RIM_TONE = 0.6
+RIM_TONE = 0.45
 
 
 def thresholds(texture: Texture, gain_pt: float) -> Floats:
@@ -62,12 +62,18 @@ def darkness(texture: Texture, gain_pt: float) -> float:
     peaks = []
     for i in range(min(9, len(strokes))):
         points = strokes[i] - strokes[i].min(axis=0) + 3 * SIGMA_PT
-        sheet = Sheet(np.zeros((1, 1)), *(points.max(axis=0) + 3 * SIGMA_PT).tolist(), gain_pt)
+        width, height = (points.max(axis=0) + 3 * SIGMA_PT).tolist()
+        sheet = Sheet(np.zeros((1, 1)), width, height, gain_pt)
         first = np.array([0, len(points)])
         pieces = curves.pieces_of(points, first, STEP_PT)
         sheet.paint(curves.sample(points, first, pieces), strokes.widths[i : i + 1])
         peaks.append(float(sheet.low_pass(sheet.ink).max()))
     return float(np.median(peaks)) if peaks else 1.0
+
+
+def crowd(sheet: Sheet, texture: Texture) -> Cells:
+    """See `Sheet.crowd`."""
+    return sheet.crowd(SINGLE * darkness(texture, sheet.gain_pt), sheet.low_pass(sheet.tone))
 
 
 def reach(texture: Texture, gain_pt: float) -> float:
@@ -156,7 +162,7 @@ def blast_tile(
         return _place(sheet, texture, enters, seed, True, pen, frame(sheet, texture, pen))
     borders = frame(sheet, texture, pen, None if texture.whole else edges)
     wanted: Cells = sheet.tone.copy()
-    crowd = sheet.crowd(SINGLE * darkness(texture, sheet.gain_pt))
+    many = crowd(sheet, texture)
     best: tuple[float, list[Strokes]] | None = None
     for _ in range(ROUNDS):
         tick()
@@ -167,7 +173,7 @@ def blast_tile(
         size = float(np.mean(np.square(error, dtype=np.float64)))
         if best is None or size < best[0]:
             best = size, strokes
-        wanted = wanted + sheet.spread(error) * crowd
+        wanted = wanted + sheet.spread(error) * many
     assert best is not None
     return best[1]
 

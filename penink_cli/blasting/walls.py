@@ -18,6 +18,9 @@ CELL_PT = 6.0
 #: Steps of tone at which an edge is a wall, and at which it is one if it goes on from a wall. Cutting strokes at
 #: every weak edge leaves stubble between edges that run side by side.
 STRONG, WEAK = 0.35, 0.18
+#: Edges that hang together are a wall if they are longer than this: what is smaller than the strokes themselves is
+#: shaped by trimming these to its tone, cut at its outline it is all stubs.
+SHORTEST_WALL_PT = 40.0
 #: The tone of an edge's side is looked up so far from it, points.
 BESIDE_PT = 1.4
 #: Pieces between walls that are shorter are not drawn.
@@ -43,7 +46,10 @@ class Walls:
 
 
 def strong_edges(edges: EdgeList, sheet: Sheet) -> Floats:
-    """The edges (m, 4), points, over which the sheet's tone steps strongly, and those that go on from them."""
+    """The edges (m, 4), points, over which the sheet's tone steps strongly, and those that go on from them.
+
+    Only such as are part of a wall longer than `SHORTEST_WALL_PT`.
+    """
     vertices = edges.scaled(sheet.width, sheet.height)
     a, b = vertices[edges.edges[:, 0]], vertices[edges.edges[:, 1]]
     along = b - a
@@ -64,7 +70,27 @@ def strong_edges(edges: EdgeList, sheet: Sheet) -> Floats:
         touched = np.zeros(len(vertices), bool)
         touched[edges.edges[strong].ravel()] = True
         strong |= (step >= WEAK) & touched[edges.edges].any(axis=1)
-    return np.concatenate([a[strong], b[strong]], axis=1)
+    kept = np.flatnonzero(strong)
+    group = hanging_together(edges.edges[kept], len(vertices))
+    kept = kept[np.bincount(group, length[kept], len(vertices))[group] >= SHORTEST_WALL_PT]
+    return np.concatenate([a[kept], b[kept]], axis=1)
+
+
+def hanging_together(edges: Ints, count: int) -> Ints:
+    """(m,) for each edge (m, 2) between count vertices the least vertex that it hangs together with.
+
+    >>> hanging_together(np.array([[4, 1], [2, 3], [1, 5]]), 6).tolist()
+    [1, 2, 1]
+    """
+    label = np.arange(count)
+    while True:
+        ends = label[edges]
+        if (ends[:, 0] == ends[:, 1]).all():
+            return np.asarray(ends[:, 0], np.int64)
+        # the greater of two roots goes under the lesser, then every vertex straight under its root
+        np.minimum.at(label, ends.max(axis=1), ends.min(axis=1))
+        while (label[label] != label).any():
+            label = label[label]
 
 
 def margin(pen_pt: float, width_pt: float, height_pt: float) -> float:

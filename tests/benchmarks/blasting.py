@@ -1,7 +1,7 @@
 """What blasting is judged by: tone, evenness, crispness, speed. ``python -m tests.benchmarks.blasting [TABLE]...``
 
-Tables: tone strict textures devices pens evenness disc speed threads poster, each within two minutes or so. All need
-Ghostscript but the last three.
+Tables: tone strict textures light devices pens long evenness disc speed threads poster, each within two minutes or so,
+textures within five. All need Ghostscript but the last three.
 """
 
 from __future__ import annotations
@@ -12,8 +12,10 @@ import time
 
 import numpy as np
 
-from penink_cli.blasting import hatching
+from penink_cli.blasting import curves, hatching, sweep, walls
 from penink_cli.blasting.blast import blast
+from penink_cli.blasting.shares import shares
+from penink_cli.blasting.sheet import Sheet
 from penink_cli.model import EdgeList, Floats
 from penink_cli.texture_options import find_texture
 from tests.blasting import measures
@@ -59,11 +61,90 @@ def tone() -> None:
 
 def strict() -> None:
     tone_table([(n, 4, "crosshatch", rule) for n in PHOTOS[:4] for rule in ("best", "strict")])
+    print("strict, how much too light a flat field is:  " + "  ".join(f"{level:5.2f}" for level in LEVELS))
+    for texture in ("crosshatch", "parallel", "stipple", "scribble"):
+        biases = []
+        for level in LEVELS:
+            strokes = blast(np.full((16, 16), level), 288, 288, None, find_texture(texture), rule="strict")
+            biases.append(measures.tone_figures(strokes, np.full((16, 16), level))[1])
+        print(f"  {texture:41}  " + "  ".join(f"{bias:+5.1f}" for bias in biases), flush=True)
+    print("the tones of the pictures, share of each:    " + "  ".join(f"{level:5.2f}" for level in LEVELS))
+    for name in PHOTOS[:4]:
+        nearest = np.abs(picture(name).reshape(-1, 1) - np.array(LEVELS)).argmin(axis=1)
+        share = np.bincount(nearest, minlength=len(LEVELS)) / len(nearest)
+        print(f"  {name:41}  " + "  ".join(f"{part:5.2f}" for part in share), flush=True)
+
+
+LEVELS = (0.05, 0.15, 0.25, 0.35, 0.45, 0.55, 0.65, 0.75, 0.85, 0.95)
 
 
 def textures() -> None:
     names = ("parallel", "grain", "crosshatch4", "stipple", "scribble", "grass", "brick")
     tone_table([(n, 4, t, "best") for t in names for n in PHOTOS[:4]])
+    pairs = [(t, w) for t in ("parallel", "grain", "stipple", "scribble") for w in (2, 8)]
+    tone_table([(n, w, t, "best") for t, w in pairs for n in PHOTOS[:4]])
+
+
+def light() -> None:
+    levels = (0.005, 0.01, 0.02, 0.03, 0.05, 0.08)
+    print("light flats, 4 × 4 in, bias / RMS:  " + "  ".join(f"{level:11.1%}" for level in levels))
+    for texture in ("crosshatch", "grain", "stipple", "scribble", "grass"):
+        cells = []
+        for level in levels:
+            wanted = np.full((32, 32), level)
+            rms, bias, _ = measures.tone_figures(blast(wanted, 288, 288, None, find_texture(texture)), wanted)
+            cells.append(f"{bias:+.2f} / {rms:.2f}")
+        print(f"  {texture:32}  " + "  ".join(f"{cell:>11}" for cell in cells), flush=True)
+
+
+def room(tone: Floats, width: float, edges: EdgeList, texture: str) -> float:
+    """The share of a picture's ink for which there is room in strokes of over 20 pt that end at its strong edges.
+
+    Lines in the directions of the layers, from frame to frame, are cut at the walls; each part weighs what its layer
+    is to cover along it.
+    """
+    sheet = Sheet(tone, width, width * len(tone) / tone.shape[1], 0.12)
+    layers = find_texture(texture).layers
+    borders = walls.build(edges, sheet, 0.4)
+    across = np.hypot(sheet.width, sheet.height)
+    offsets = np.arange(-across / 2, across / 2, 1.5)
+    ink, long = 0.0, 0.0
+    for layer, cover in zip(layers, shares(sheet.tone.astype(float), sheet.tone.astype(float), layers)):
+        c, s = sweep.heading(layer.angle)
+        count = int(across)
+        t = (np.arange(count + 1) / count - 0.5) * across
+        points = np.array([sheet.width / 2, sheet.height / 2]) + t[None, :, None] * np.array([c, s])
+        points = points + offsets[:, None, None] * np.array([-s, c])
+        lines = curves.Polylines(points.reshape(-1, 2), np.arange(len(offsets) + 1) * (count + 1))
+        none = np.zeros(len(offsets))
+        parts = walls.cut(borders, lines, none, (none, none))
+        at = np.clip(np.floor(lines.points * (sheet.scale / 8)).astype(int), 0, (sheet.columns - 1, sheet.rows - 1))
+        run = np.concatenate([[0.0], np.cumsum(cover[at[:, 1], at[:, 0]])])
+        base = lines.first[parts.curve]
+        weight = run[base + parts.end.astype(int) + 1] - run[base + parts.start.astype(int)]
+        ink += weight.sum()
+        long += weight[(parts.end - parts.start) * across / count > 20].sum()
+    return long / ink
+
+
+def long() -> None:
+    from penink_cli.arrangement.detection import detect_edges
+
+    print("ink in runs over 20 pt, 4 in:  no edges  cut at strong edges  room for, at those edges     RMS  worst")
+    for name in (*PHOTOS[1:], "astronaut", "coffee"):
+        wanted = picture(name)
+        edges = detect_edges(1 - wanted)
+        free, cut = (draw_with(wanted, 4, e) for e in (None, edges))
+        rms, _, worst = measures.tone_figures(cut, wanted)
+        print(
+            f"  {name:28} {measures.long_share(free):9.3f}  {measures.long_share(cut):19.3f}"
+            f"  {room(wanted, 288, edges, 'crosshatch'):24.3f}  {rms:6.2f}  {worst:5.1f}",
+            flush=True,
+        )
+
+
+def draw_with(tone: Floats, inches: float, edges: EdgeList | None):
+    return blast(tone, inches * 72, inches * 72 * len(tone) / tone.shape[1], edges, find_texture("crosshatch"))
 
 
 def devices() -> None:
@@ -91,7 +172,10 @@ def pens() -> None:
 def even() -> None:
     """Without fine strokes, which lie between the lines."""
     hatching.FINE_LEAST = np.inf
-    print("evenness, flat, 8 × 8 in:   tone  angle     cv spread doubled   long gaping aligned  over 20 pt  tone RMS")
+    print(
+        "evenness, flat, 8 × 8 in: tone  angle     cv spread doubled   long gaping aligned"
+        "  tile dB  peak dB  repeat  over 20 pt  tone RMS"
+    )
     for texture in ("parallel", "crosshatch"):
         for level in (0.1, 0.2, 0.35, 0.55):
             wanted = np.full((64, 64), level)
@@ -100,8 +184,9 @@ def even() -> None:
             for angle in (-45.0, 45.0) if level > 0.5 and texture == "crosshatch" else (-45.0,):
                 f = measures.evenness(strokes, angle)
                 print(
-                    f"  {texture:24} {level:5}  {angle:5}  {f['cv']:5.3f} {f['spread']:6.3f} {f['doubled']:7.4f}"
+                    f"  {texture:22} {level:5}  {angle:5}  {f['cv']:5.3f} {f['spread']:6.3f} {f['doubled']:7.4f}"
                     f" {f['doubled_long']:6.4f} {f['gaping']:6.4f} {f['aligned_ends']:7.3f}"
+                    f"  {f['tile_db']:+7.2f}  {f['tile_peak_db']:+7.2f}  {f['repeat_corr']:6.3f}"
                     f"  {measures.long_share(strokes):10.3f}  {rms:8.2f}",
                     flush=True,
                 )
@@ -171,8 +256,8 @@ def poster() -> None:
 
 
 TABLES = {
-    "tone": tone, "strict": strict, "textures": textures, "devices": devices, "pens": pens, "evenness": even,
-    "disc": disc, "speed": speed, "threads": threads, "poster": poster,
+    "tone": tone, "strict": strict, "textures": textures, "light": light, "devices": devices, "pens": pens,
+    "long": long, "evenness": even, "disc": disc, "speed": speed, "threads": threads, "poster": poster,
 }  # fmt: skip
 
 if __name__ == "__main__":

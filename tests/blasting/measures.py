@@ -101,15 +101,18 @@ def evenness(strokes: Strokes, angle: float, margin: float = 14.0, step: float =
     cv, their deviation by their mean; spread, half the distance of the quantiles 16 and 84 % by the median; doubled and
     gaping, the shares under 0.4 and over 1.8 of the mean; doubled_long, those doubled by a pair that stays so for 6 pt.
     aligned_ends: the share of strokes whose first end has the first end of one in a neighbouring lane within 2 pt.
+    Those of `repeats` besides.
     """
     along = np.array([np.cos(np.radians(angle)), np.sin(np.radians(angle))])
     across = np.array([-along[1], along[0]])
-    met, starts = [], []
+    met, starts, ink = [], [], []
     for i in range(len(strokes)):
         line = flattened(strokes, i)
+        legs = np.diff(line, axis=0)
         chord = line[-1] - line[0]
         if abs(chord @ across) > 0.26 * abs(chord @ along):
             continue
+        ink.append(np.column_stack([(line[1:] + line[:-1]) / 2, np.hypot(*legs.T) * strokes.widths[i]]))
         u, v = line @ along, line @ across
         if u[0] > u[-1]:
             u, v = u[::-1], v[::-1]
@@ -141,6 +144,63 @@ def evenness(strokes: Strokes, angle: float, margin: float = 14.0, step: float =
         "doubled_long": count[count * step > 6].sum() / len(gaps),
         "gaping": (gaps > 1.8 * mean).mean(),
         "aligned_ends": aligned / max(1, len(ends)),
+        **repeats(np.concatenate(ink), strokes.width, strokes.height, across, mean),
+    }
+
+
+TILE_PT = 144
+
+
+def repeats(ink: Floats, width: float, height: float, across: Floats, gap: float) -> dict[str, float]:
+    """How much a field of one tone repeats itself. ink: (n, 3) x, y, area of small bits of stroke.
+
+    tile_db: the mean power at the harmonics of a tile of TILE_PT by that half a harmonic beside them, 10 lg;
+    tile_peak_db: the strongest of the ones by the strongest of the others. Power is divided by the median around it.
+    repeat_corr: the highest peak of the autocorrelation of the ink, blurred by the mean gap, over 30 pt away and not
+    on the same line.
+    """
+    rows, columns = round(height), round(width)
+    field = np.zeros((rows + 2, columns + 2))
+    at = ink[(ink[:, :2] >= 0).all(axis=1) & (ink[:, 0] < columns) & (ink[:, 1] < rows)]
+    cell = np.floor(at[:, :2] + 0.5).astype(int)
+    f = at[:, :2] + 0.5 - cell
+    for dx, dy in ((0, 0), (1, 0), (0, 1), (1, 1)):
+        share = (f[:, 0] if dx else 1 - f[:, 0]) * (f[:, 1] if dy else 1 - f[:, 1])
+        np.add.at(field, (cell[:, 1] + dy, cell[:, 0] + dx), share * at[:, 2])
+    field = field[1:-1, 1:-1]
+
+    n = min(rows, columns) // TILE_PT * TILE_PT
+    tiles = n // TILE_PT
+    window = np.hanning(n + 1)[:n]
+    part = field[:n, :n] - field[:n, :n].mean()
+    power = np.fft.fftshift(np.abs(np.fft.fft2(part * window * window[:, None])) ** 2)
+    most = 13 * tiles
+    k = np.arange(-most, most + 1)
+    power = power[n // 2 - most - 4 : n // 2 + most + 5, n // 2 - most - 4 : n // 2 + most + 5]
+    around = np.lib.stride_tricks.sliding_window_view(power, (9, 9))
+    power = power[4:-4, 4:-4] / np.median(around, axis=(2, 3))
+    frequency = np.hypot(k, k[:, None]) / n
+    band = (frequency <= min(0.75 / gap, 12 / TILE_PT)) & (frequency > 0.7 / TILE_PT) & (k[:, None] >= 0)
+    half = tiles // 2
+
+    def lattice(y: int, x: int) -> Floats:
+        return power[band & (k[:, None] % tiles == y) & (k % tiles == x)]
+
+    on, off = lattice(0, 0), [lattice(0, half), lattice(half, 0), lattice(half, half)]
+
+    fy, fx = np.fft.fftfreq(2 * rows)[:, None], np.fft.fftfreq(2 * columns)
+    padded, there = np.zeros((2, 2 * rows, 2 * columns))
+    padded[:rows, :columns], there[:rows, :columns] = field - field.mean(), 1.0
+    blur = np.exp(-2 * (np.pi * gap) ** 2 * (fx**2 + fy**2))
+    together = np.fft.ifft2(np.abs(np.fft.fft2(padded) * blur) ** 2).real
+    together /= np.maximum(np.fft.ifft2(np.abs(np.fft.fft2(there)) ** 2).real, 1)
+    dx, dy = fx * 2 * columns, fy * 2 * rows
+    far = (np.abs(dx) < 0.6 * columns) & (np.abs(dy) < 0.6 * rows) & (np.hypot(dx, dy) > 30)
+    far &= np.abs(dx * across[0] + dy * across[1]) > 3 * gap
+    return {
+        "tile_db": 10 * np.log10(on.mean() / np.mean([o.mean() for o in off])),
+        "tile_peak_db": 10 * np.log10(on.max() / np.mean([o.max() for o in off])),
+        "repeat_corr": (together / together[0, 0])[far].max(),
     }
 
 

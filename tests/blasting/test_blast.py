@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from penink_cli.blasting import _due, _ink, _place, _press, _sweep, _walls
+from penink_cli.blasting import _curves, _due, _ink, _place, _press, _sweep, _walls
 from penink_cli.blasting.blast import batches, blast, too_dark
 from penink_cli.blasting.shares import shares
 from penink_cli.errors import ParameterError
@@ -25,7 +25,7 @@ def same(a: Strokes, b: Strokes) -> bool:
 
 
 def test_the_compiled_kernels_are_the_ones_under_test():
-    assert all(kernel.COMPILED for kernel in (_due, _ink, _place, _press, _sweep, _walls))
+    assert all(kernel.COMPILED for kernel in (_curves, _due, _ink, _place, _press, _sweep, _walls))
 
 
 @pytest.mark.parametrize(
