@@ -43,7 +43,7 @@ FINE_COST, FINE_SHORTEST_PT = 0.02, 20.5
 #: Along the frame strokes are drawn where it is darker, and count their own ink so many times.
 RIM_TONE, RIM_CAUTION = 0.85, 4.0
 #: Rows of fine strokes that are tried, and the moves sideways, in rows, that look for the middle of a gap.
-FINE_ROW_PT, FINE_MOVES = 1.5, (-0.5, -0.25, 0.25, 0.5, 0.0)
+FINE_ROW_PT, FINE_MOVES = 1.5, (-0.33, 0.33, 0.0)
 #: How far a hand's pressure widens or narrows a stroke, and in how many rounds that is found.
 PRESSURE, PRESSES = 0.22, 3
 
@@ -181,15 +181,12 @@ def press(sheet: Sheet, strokes: Strokes, seed: int, crowd: Cells) -> Strokes:
     order = np.random.default_rng([seed, 5]).permutation(len(strokes))
     pieces = curves.pieces_of(strokes.points, strokes.first, candidates.STEP_PT)
     lines = curves.sample(strokes.points, strokes.first, pieces)
-    widths = strokes.widths
     # a single line in a light place is no darker than it should be
     middle = lines.points[(lines.first[:-1] + lines.first[1:]) // 2] * (sheet.scale / 8)
     at = np.clip(middle.astype(np.int64), 0, (sheet.columns - 1, sheet.rows - 1))
     pressure = PRESSURE * crowd[at[:, 1], at[:, 0]].astype(np.float64)
-    for turn in range(PRESSES):
-        if turn:
-            sheet.clear()
-            sheet.paint(lines, widths)
-        widths = sheet.press(lines, widths, strokes.widths * (1 - pressure), strokes.widths * (1 + pressure), [order])
+    widths = sheet.press(
+        lines, strokes.widths, strokes.widths * (1 - pressure), strokes.widths * (1 + pressure), order, PRESSES
+    )
     widths = np.maximum(np.round(widths, 2), 0.01)
     return Strokes(strokes.width, strokes.height, strokes.points, strokes.first, widths)

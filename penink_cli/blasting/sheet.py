@@ -235,28 +235,31 @@ class Sheet:
         return found, moved[who] / self.scale
 
     def press(
-        self, lines: Polylines, widths: Floats, lightest: Floats, heaviest: Floats, batches: Sequence[Ints]
+        self, lines: Polylines, widths: Floats, lightest: Floats, heaviest: Floats, order: Ints, rounds: int
     ) -> Floats:
         """Widths (n,) for polylines that are drawn already with `widths`, such that less is due.
 
-        Each lies between lightest and heaviest (n,), points: the pressure of the hand on the pen. The ink stays as
-        it is; the error that the eye sees is reckoned with to first order.
+        Each lies between lightest and heaviest (n,), points: the pressure of the hand on the pen. In each round the
+        error that the eye sees is reckoned with to first order; then all is painted anew.
         """
-        residual = self._gather(halve(self.tone - self.ink), self._coarse_tone, self._eye)
         points = np.ascontiguousarray(lines.points * self.scale)
-        longest = int(np.diff(lines.first).max()) + 2 if len(widths) else 2
         pressed = np.ascontiguousarray(widths * self.pitch)
         low, high = np.ascontiguousarray(lightest * self.pitch), np.ascontiguousarray(heaviest * self.pitch)
+        fresh, resistance = np.zeros(len(points), np.float32), np.full(len(widths), -1.0)
+        groups = coloured(order, self._blocks(lines)[order])
+        for turn in range(rounds):
+            if turn:
+                self.clear()
+                self.paint(lines, pressed / self.pitch)
+            residual = self._gather(halve(self.tone - self.ink), self._coarse_tone, self._eye)
 
-        def run(order: Ints) -> None:
-            _press.press(
-                self.bits, self.columns, self.gain, residual, self._coarse_tone, self._eye, self.step,
-                self._eye_profile, points, lines.first, pressed, low, high, order, np.empty((3, longest)),
-            )  # fmt: skip
+            def run(some: Ints, residual: Cells = residual) -> None:
+                _press.press(
+                    self.bits, self.columns, self.gain, residual, self._coarse_tone, self._eye, self.step,
+                    self._eye_profile, points, lines.first, pressed, low, high, some, fresh, resistance,
+                )  # fmt: skip
 
-        block = self._blocks(lines)
-        for batch in batches:
-            for group in coloured(batch, block[batch]):
+            for group in groups:
                 self._each(run, group)
         return pressed / self.pitch
 
