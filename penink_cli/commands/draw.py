@@ -10,7 +10,9 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import click
+from click.core import ParameterSource
 
+from penink_cli.commands.blast import warnings
 from penink_cli.commands.inputs import read_photo
 from penink_cli.errors import printable
 from penink_cli.options import LENGTH, DeviceDpi, Finite, filter_options, processors, threads_option, verbose_option
@@ -25,6 +27,8 @@ OUTLINE_PEN_PT = 0.7
 OUTLINE_STRENGTH = 0.2  # the grey step that is worth an outline
 OUTLINE_LENGTH = 0.04  # of the photo's longer side: shorter chains are texture, and the hatching's to show
 PNG_DPI = 150.0
+PRINTER_DPI = 600.0
+ON_SCREEN = (".png", ".svg")  # these are looked at as they are, mostly; a printer would darken them
 
 
 @click.command()
@@ -37,10 +41,9 @@ PNG_DPI = 150.0
 @click.option(
     "--device-dpi",
     type=DeviceDpi(),
-    default="600",
-    show_default=True,
     metavar="N|none",
-    help="Resolution of the printer, which paints every dot that a stroke touches; none for plotters and screens.",
+    help="Resolution of the printer, which paints every dot that a stroke touches; none for plotters and screens."
+    "  [default: 600, for .png and .svg none]",
 )
 @click.option("--outlines/--no-outlines", default=True, help="Outline strokes along strong edges.  [default: yes]")
 @threads_option
@@ -63,8 +66,8 @@ def draw(
     """Turn a photo into a pen-and-ink drawing, the whole chain in one call.
 
     The result is PostScript, or what the ending of -o says: .ps, .eps, .svg, .pdf, .png, .jsonl (strokes) or
-    .penink, the illustration itself, which `penink render` draws at any size. --verbose
-    prints the chain of filters that gives the same bytes.
+    .penink, the illustration itself, which `penink render` draws at any size. --verbose prints the chain of
+    filters that gives the same bytes.
 
     \b
     penink draw photo.jpg -o photo.pdf
@@ -83,6 +86,8 @@ def draw(
     rows, columns = photo.values.shape
     height = width * rows / columns
     check_sheet(width, height)
+    if click.get_current_context().get_parameter_source("device_dpi") is ParameterSource.DEFAULT:
+        device_dpi = None if ending in ON_SCREEN else PRINTER_DPI
     choice = None
     if outlines:
         least = math.floor(OUTLINE_LENGTH * max(rows, columns) + 0.5)
@@ -90,7 +95,7 @@ def draw(
     with progress(5, "draw", quiet) as advance:
         edges, reduced, grid = drawing.represented(photo, threads, advance)
         if verbose:
-            options = click.get_current_context().params
+            options = click.get_current_context().params | {"device_dpi": device_dpi}
             for line in _chain(file, output, ending, options, grid, choice, (rows, columns)):
                 click.echo(line, err=True)
         if ending == ".penink":
@@ -101,6 +106,8 @@ def draw(
             )  # fmt: skip
             _write_illustration(output, Illustration(width, height, (layer,)))
             return
+        for line in warnings(drawing.tone_curve(reduced, gamma), texture, pen, device_dpi):
+            click.echo(f"penink draw: warning: {line}", err=True)
         outlined = drawing.outlined(edges, width, height, choice) if choice else None
         grey = drawing.enlarged(reduced, edges, drawing.grey_size(width, rows / columns), threads)
         advance(1)
@@ -195,6 +202,10 @@ def _chain(
     blast += f" --gamma {options['gamma']!r} --seed {options['seed']}"
     blast += f" --device-dpi {'none' if options['device_dpi'] is None else repr(options['device_dpi'])}"
     lines = [f"penink detect-edges {photo} -o e.json"]
+    samples = f"penink extract-samples -e e.json {photo} | penink reduce -e e.json {grid} --photo {photo}"
+    if ending == ".penink":
+        lines.append(f"{samples} -o samples.pgm")
+        return [*lines, "# and `penink pack` of an illustration.json that names both, the texture and the outlines"]
     names = "hatching.jsonl"
     if choice:
         lines.append(
@@ -204,9 +215,7 @@ def _chain(
         blast += " --ink outlines.jsonl"
         names += " outlines.jsonl"
     lines.append(
-        f"penink extract-samples -e e.json {photo} | "
-        f"penink reduce -e e.json {grid} --photo {photo} | "
-        f"penink enlarge -e e.json --size {size[0]}x{size[1]} --soften | {blast} -o hatching.jsonl"
+        f"{samples} | penink enlarge -e e.json --size {size[0]}x{size[1]} --soften | {blast} -o hatching.jsonl"
     )
     command = {".svg": "to-svg", ".pdf": "to-pdf", ".png": "to-png"}.get(ending, "to-ps")
     lines.append(f"penink {command} {names}" + (f" -o {shlex.quote(output)}" if output not in (None, "-") else ""))

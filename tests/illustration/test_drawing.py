@@ -99,6 +99,9 @@ def test_bad_manifests_are_refused(loose):
         assert reason in str(raised.value) and str(raised.value).startswith(str(loose)), (change, str(raised.value))
 
 
+THIN = '<svg xmlns="http://www.w3.org/2000/svg" width="48" height="48"><line x1="3" y1="3" x2="40" y2="40"/></svg>'
+
+
 @pytest.fixture(scope="module")
 def noise(tmp_path_factory):
     """A photograph that no grid represents, and that has no edge worth an outline."""
@@ -131,6 +134,21 @@ def test_the_ending_tells_what_is_drawn(penink, photo, tmp_path):
     assert strokes(ran(penink("render", tmp_path / "d.penink")))[0]["width"] == 72
     done = penink("draw", photo, "-o", tmp_path / "d.doc")
     assert done.returncode == 2 and b"known endings" in done.stderr
+
+
+def test_a_picture_for_a_screen_has_the_photo_s_tone_as_it_is(penink, photo, tmp_path):
+    wanted = np.asarray(Image.open(photo).convert("L"), dtype=float).mean()
+    ran(penink("draw", photo, "--width", "3in", "-o", tmp_path / "d.png"))
+    assert abs(np.asarray(Image.open(tmp_path / "d.png").convert("L"), dtype=float).mean() - wanted) < 2.5
+    ran(penink("draw", photo, "--width", "3in", "--device-dpi", "600", "-o", tmp_path / "d.png"))
+    assert np.asarray(Image.open(tmp_path / "d.png").convert("L"), dtype=float).mean() - wanted > 8
+
+
+def test_a_texture_that_cannot_be_dark_enough_is_warned_about(penink, photo, tmp_path):
+    (tmp_path / "thin.svg").write_text(THIN)
+    ran(penink("texture", "import", tmp_path / "thin.svg", "-o", tmp_path / "thin.texture.json"))
+    done = penink("draw", photo, "-t", tmp_path / "thin.texture.json", "--width", "1in")
+    assert done.returncode == 0 and b"penink draw: warning: " in done.stderr and b"darker than" in done.stderr
 
 
 def test_a_drawing_has_the_tone_of_its_photo_at_every_size(penink, photo, ghostscript, tmp_path):
