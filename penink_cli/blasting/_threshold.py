@@ -69,7 +69,8 @@ def runs(
     copies: cython.int[:, ::1], columns: cython.int, rows: cython.int,
     ax: cython.double[::1], ay: cython.double[::1], bx: cython.double[::1], by: cython.double[::1],
     first: cython.int[::1], items: cython.int[::1],
-    pen: cython.double, whole: cython.bint, gap: cython.int, short: cython.double, deep: cython.double,
+    pen: cython.double, gain: cython.double,
+    whole: cython.bint, gap: cython.int, short: cython.double, deep: cython.double,
     block: cython.double, ink: cython.double[:, ::1],
     points: cython.double[:, ::1], ends: cython.longlong[::1], size: cython.longlong[::1],
 ) -> cython.bint:  # fmt: skip
@@ -82,7 +83,8 @@ def runs(
     wave, turn: lines wander sideways by about so much, turn radians a point.
     copies: (c, 2) the tiles.
     ax … items: edges in sample units and the squares (columns × rows) they are in.
-    pen: effective width. What is drawn is added to ink, blocks of `block` points square.
+    pen: effective width; gain: what of it, of an upright stroke, the device adds. What is drawn is
+        added to ink, blocks of `block` points square.
     points, ends: size[0] points of size[1] runs, each up to its end; size is brought up to date.
     """
     n: cython.int = tone.shape[1]
@@ -161,7 +163,7 @@ def runs(
                 if total > 0:
                     _polyline(0, k, k, every, px, py, points, ends, size)
                     _count(
-                        0, k, fresh[s] * (length + 0.785 * pen) / (k + 1), 0.0, k, 0.0, width, height,
+                        0, k, fresh[s] * (length + 0.785 * pen) / (k + 1), 0.0, k, gain, 0.0, width, height,
                         block, px, py, ink,
                     )  # fmt: skip
                 continue
@@ -191,8 +193,8 @@ def runs(
                             _polyline(ta, tb, k, every, px, py, points, ends, size)
                             each = fresh[s] * step * (tb - ta) / (last - start + 1)
                             _count(
-                                start, last, each, step if wave > 0 else 0.0, k, abs(cosine) + abs(sine), width, height,
-                                block, px, py, ink,
+                                start, last, each, step if wave > 0 else 0.0, k, gain, abs(cosine) + abs(sine),
+                                width, height, block, px, py, ink,
                             )
                     start = -1
     return True
@@ -203,19 +205,19 @@ def runs(
 @cython.exceptval(check=False)
 def _count(
     start: cython.int, last: cython.int, each: cython.double, step: cython.double, k: cython.int,
-    widens: cython.double, width: cython.double, height: cython.double, block: cython.double,
+    gain: cython.double, widens: cython.double,
+    width: cython.double, height: cython.double, block: cython.double,
     px: cython.p_double, py: cython.p_double, ink: cython.double[:, ::1],
 ) -> cython.void:  # fmt: skip
     """Add a run's length to the blocks it passes: each of its samples' share, stretched as its piece is if step > 0.
 
-    widens: |cos| + |sin| of the direction that the screen's pen is meant for.
+    gain: what the device adds to an upright or level stroke, of its width. It adds more to a slanting one: waves
+    come out darker where they are steep, and the feedback must know.
+    widens: |cos| + |sin| of the direction that the pen is for.
     """
     j: cython.int
     i: cython.int
     share: cython.double
-    # What a printer of 600 dpi adds to an upright or level stroke, of its width. It adds more to a slanting one: waves
-    # come out darker where they are steep, and the feedback must know.
-    gain: cython.double = 0.12 / 0.54
     for j in range(start, last + 1):
         if 0 <= px[j] < width and 0 <= py[j] < height:
             share = each

@@ -163,7 +163,7 @@ def blast_on(
         ends = (edges.scaled(*squares) - 0.5)[edges.edges].reshape(-1, 4)
     parts = []
     for screen, (points, stops) in zip(
-        sizes.screens, draw(ink, total, ends, squares, sizes, sheet, unit), strict=True
+        sizes.screens, draw(ink, total, ends, squares, sizes, sheet, unit, gain), strict=True
     ):
         pen = pen_pt or max(sizes.pen_pt * unit - gain * screen.widens, 0.02)
         parts.append(_smooth(*_within(points, stops, width_pt, height_pt, pen / 2), pen))
@@ -239,12 +239,14 @@ def _smooth(points: Floats, stops: Ints, pen: float) -> tuple[Floats, Ints, Floa
 
 
 def draw(
-    tone: Bytes, total: Bytes, ends: Floats, samples: tuple[int, int], table: ThresholdTable, sheet: Paper, unit: float
+    tone: Bytes, total: Bytes, ends: Floats, samples: tuple[int, int], table: ThresholdTable, sheet: Paper, unit: float,
+    gain_pt: float,
 ) -> list[tuple[Floats, Ints]]:
     """For each screen its runs: points (p, 2) of polylines, and where each ends.
 
     tone, total: (m, n) as `add_up` has them. ends: (e, 4) the edges, on a grid of samples (w, h)
-    whose first lies at 0, 0. unit: magnification of pen and tile. The sheet is left as bare as it will be.
+    whose first lies at 0, 0. unit: magnification of pen and tile.
+    gain_pt: what the device adds to an upright stroke. The sheet is left as bare as it will be.
     """
     w, h, block = sheet.width_pt / unit, sheet.height_pt / unit, sheet.side_pt / unit
     columns, rows = samples[0] + 1, samples[1] + 1
@@ -266,7 +268,8 @@ def draw(
                     wanted, w, h, control, screen.enters * 255, screen.fresh_of_each, screen.line, table.way,
                     screen.level, c, s, screen.width, screen.height, screen.wave, screen.turn, copies,
                     columns, rows, ax, ay, bx, by, first, items,
-                    table.pen_pt, table.whole, GAP, SHORT, DEEP, block, ink, points, ends_of, count,
+                    table.pen_pt, gain_pt / unit / table.pen_pt, table.whole,
+                    GAP, SHORT, DEEP, block, ink, points, ends_of, count,
                 ):  # fmt: skip
                     break
                 room *= 4

@@ -72,7 +72,7 @@ def test_strokes_that_grow_with_the_picture_are_told_apart(page):
 def test_the_same_strokes_as_on_paper(page):
     runs = page.evaluate("""(() => {
       let length = 0;
-      draw(layers, 108, 108, [0, 0, 108, 108], (layer, screen, count) => {
+      draw(layers, 108, 108, [0, 0, 108, 108], 0, (layer, screen, count) => {
         for (let i = 1; i < count; i++) length += Math.hypot(alongX[i] - alongX[i - 1], alongY[i] - alongY[i - 1]);
       }, () => 0);
       return length;

@@ -38,7 +38,7 @@ def on_a_page(picture: Illustration, width: float, tmp_path) -> list[np.ndarray]
     path.write_bytes(html.write(picture, "picture"))
     height = width * picture.height / picture.width
     with Page(path, 300, 300) as page:
-        text = page.evaluate(f"svg({width}, [0, 0, {width}, {height}], 0)")
+        text = page.evaluate(f"svg({width}, [0, 0, {width}, {height}], 72 / 600)")
     lines = "".join(re.findall(r' d="([^"]*)"', text))
     return [np.array(part.split(), float).reshape(-1, 2) for part in lines.split("M")[1:]]
 

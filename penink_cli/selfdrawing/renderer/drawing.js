@@ -2,7 +2,7 @@
 // The same steps as texture.ps and drawing.ps, which say why.
 
 const PARTS = [0, 0.5, 0.63, 0.75, 1], COVERS = [0, 0.6912, 0.845, 0.943, 0.995];
-const AROUND = 288, ACROSS = 100, LINES = 256, BLOCK = 9, PATCH = 18, GAP = 3, SHORT = 3, DEEP = 24, GAIN = 0.12 / 0.54;
+const AROUND = 288, ACROSS = 100, LINES = 256, BLOCK = 9, PATCH = 18, GAP = 3, SHORT = 3, DEEP = 24;
 // Blocks around the window that are reconstructed and corrected with it: what lies farther moves no stroke in it visibly.
 const MARGIN = 4;
 
@@ -93,12 +93,12 @@ class Blocks {
 
 // A layer in the part of the picture that matters. Its tone lies on a grid of its own of about a cell a unit.
 class Sheet {
-  constructor(layer, blocks) {
+  constructor(layer, blocks, gain) {
     const {picture, magnification: unit} = layer, width = blocks.width / unit, height = blocks.height / unit;
     const n = Math.max(picture.w, Math.round(width)), m = Math.max(picture.h, Math.round(height)), perX = n / width, perY = m / height;
     const x0 = Math.floor(blocks.x0 / unit * perX), y0 = Math.floor(blocks.y0 / unit * perY);
     const x1 = Math.min(n, Math.ceil(blocks.x1 / unit * perX)), y1 = Math.min(m, Math.ceil(blocks.y1 / unit * perY));
-    Object.assign(this, {layer, blocks, unit, width, height, n, m, perX, perY, x0, y0, wide: x1 - x0, tall: y1 - y0});
+    Object.assign(this, {layer, blocks, gain: gain / unit / layer.pen, unit, width, height, n, m, perX, perY, x0, y0, wide: x1 - x0, tall: y1 - y0});
     this.tone = picture.tone(n, m, x0, y0, x1, y1);
     if (layer.curve) for (let k = 0; k < this.tone.length; k++) this.tone[k] = layer.curve[this.tone[k]];
     this.sum = this.tone;                                     // of this layer and those below
@@ -208,14 +208,14 @@ class Sheet {
     const ta = begins > 0 ? this.end(begins, -1, steps, step) : 0, tb = ends < steps ? this.end(ends, 1, steps, step) : steps;
     if (tb <= ta) return;
     if (!paint) {
-      const {width, height, unit, blocks: {side, left, top, across, down}} = this, per = unit / side;
+      const {width, height, unit, gain, blocks: {side, left, top, across, down}} = this, per = unit / side;
       const each = weight * (screen.whole ? (steps * step + 0.785 * this.layer.pen) / (steps + 1) : step * (tb - ta) / (ends - begins + 1));
       for (let j = begins; j <= ends; j++) {
         const x = px[j], y = py[j], a = Math.floor(x * per) - left, b = Math.floor(y * per) - top, i = Math.min(j, steps - 1);
         if (x < 0 || y < 0 || x >= width || y >= height || a < 0 || b < 0 || a >= across || b >= down) continue;
         // a wave stretches the way, and a printer widens what slants
         const dx = px[i + 1] - px[i], dy = py[i + 1] - py[i];
-        ink[b * across + a] += screen.wave ? each * ((1 - GAIN * screen.widens) * far(dx, dy) + GAIN * (Math.abs(dx) + Math.abs(dy))) / step : each;
+        ink[b * across + a] += screen.wave ? each * ((1 - gain * screen.widens) * far(dx, dy) + gain * (Math.abs(dx) + Math.abs(dy))) / step : each;
       }
       return;
     }
@@ -296,12 +296,13 @@ function point(count, t, steps) {
   return count + 1;
 }
 
-// Draws the layers of a picture of width by height points in a window (x0 y0 x1 y1) of it. Calls stroke(layer, screen, count)
+// Draws the layers of a picture of width by height points in a window (x0 y0 x1 y1) of it, for a device that adds so many points
+// (gain) to an upright stroke. Calls stroke(layer, screen, count)
 // with strokes of hatching and outline(layer, xs, ys, pen) with outlines, in units of the layer, of which a point has `magnification`.
-function draw(layers, width, height, window, stroke, outline) {
+function draw(layers, width, height, window, gain, stroke, outline) {
   const blocks = new Blocks(width, height, window, BLOCK * Math.max(...layers.map(layer => layer.magnification)));
   if (!blocks.bare.length) return;
-  const sheets = layers.map(layer => new Sheet(layer, blocks)), outlines = layers.map(layer => outlinesOf(layer, blocks));
+  const sheets = layers.map(layer => new Sheet(layer, blocks, gain)), outlines = layers.map(layer => outlinesOf(layer, blocks));
   addUp(sheets);
   for (const sheet of sheets) {
     let most = sheet.patches();

@@ -43,7 +43,7 @@ function repaint() {
   const per = UNIT * ratio, x = view.x * ratio, y = view.y * ratio, right = x + size[0] * scale() * ratio, bottom = y + size[1] * scale() * ratio;
   const raster = new Raster(wide, tall, ...[x, y, right, bottom].map(Math.round));
   let strokes = 0;
-  draw(layers, size[0] * scale() / UNIT, size[1] * scale() / UNIT, [-x / per, -y / per, (wide - x) / per, (tall - y) / per], (layer, screen, count) => {
+  draw(layers, size[0] * scale() / UNIT, size[1] * scale() / UNIT, [-x / per, -y / per, (wide - x) / per, (tall - y) / per], 0, (layer, screen, count) => {
     raster.stroke(alongX, alongY, count, per * layer.magnification, x, y, layer.pen * layer.magnification * per / 2, false);
     strokes++;
   }, (layer, xs, ys, pen) => raster.stroke(xs, ys, xs.length, per * layer.magnification, x, y, pen * layer.magnification * per / 2, true));
@@ -66,7 +66,7 @@ function svg(width, window, gain) {
     if (!paths.has(wide)) paths.set(wide, []);
     paths.get(wide).push(d);
   };
-  draw(layers, width, height, window,
+  draw(layers, width, height, window, gain,
     (layer, screen, count) => add(layer, layer.pen * layer.magnification - gain * screen.widens, alongX, alongY, count),
     (layer, xs, ys, pen) => add(layer, pen * layer.magnification - 1.27 * gain, xs, ys, xs.length));
   return [`<svg xmlns="http://www.w3.org/2000/svg" width="${fixed(x1 - x0)}pt" height="${fixed(y1 - y0)}pt" viewBox="${fixed(x0)} ${fixed(y0)} ${fixed(x1 - x0)} ${fixed(y1 - y0)}">`,
