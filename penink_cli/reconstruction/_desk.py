@@ -6,33 +6,64 @@ from cython.cimports.libc.stdlib import free, malloc, realloc
 
 COMPILED = cython.compiled
 
+NUMBER = cython.declare(cython.size_t, cython.sizeof(cython.double))  # room for one, in floats too
+SPREAD = cython.declare(cython.size_t, 4 * cython.sizeof(cython.float))  # room for one that is in all lanes
+
 
 @cython.final
 @cython.cclass
 class Desk:
-    """Scratch of one thread. Arrays of 64 hold one number a pixel of the tile, row by row."""
+    """Scratch of one thread, numbers in single or in double, aligned for the lanes they are computed in.
 
-    def __init__(self):
+    bits: (256, 8) a byte as eight numbers, 0 or 1 for each bit.
+    ux: (8,) the columns of pixels, relative to the cell and in units of the radius. uy: (8,) the rows, spread.
+    kx: (2, 4, 8) weights of each column of samples at the columns of pixels, cubic and B-spline.
+    ky: (2, 8, 4) those of each row of samples at the rows of pixels, spread.
+    values: (16,) the samples. spread: (16,) those of them that are noted, spread.
+    alpha: (16, 8, 8) attenuation of a sample at each pixel.
+    nodes: (size, 8, 8) distance of each pixel from a node, FAR where it is hidden; node_mask: where it is seen.
+    bend, bend_length: (size,) the nodes next to one sample, and how far it is to them, spread.
+    shaded: for each row of pixels the set of samples that some of them do not see.
+    notes: how many of those have an attenuation other than zero somewhere in the row. note, note_alpha: (8, 16) which,
+    in reading order, and where that attenuation is. A number that is *spread* is in all lanes.
+    """
+
+    def __init__(self, single: cython.bint):
         k: cython.int
         i: cython.int
         self.size = 32
-        self.bits = cython.cast(cython.p_double, malloc(256 * 8 * cython.sizeof(cython.double)))
-        self.bits_single = cython.cast(cython.p_float, malloc(256 * 8 * cython.sizeof(cython.float)))
-        self.alpha = cython.cast(cython.p_double, malloc(16 * 64 * cython.sizeof(cython.double)))
-        self.alpha_single = cython.cast(cython.p_float, self.alpha)
-        self.nodes = cython.cast(cython.p_double, malloc(self.size * 64 * cython.sizeof(cython.double)))
-        self.nodes_single = cython.cast(cython.p_float, self.nodes)
+        self.bits = malloc(256 * 8 * NUMBER)
+        self.ux = malloc(8 * NUMBER)
+        self.uy = malloc(8 * SPREAD)
+        self.kx = malloc(2 * 4 * 8 * NUMBER)
+        self.ky = malloc(2 * 8 * 4 * SPREAD)
+        self.values = malloc(16 * NUMBER)
+        self.spread = malloc(16 * SPREAD)
+        self.alpha = malloc(16 * 64 * NUMBER)
+        self.nodes = malloc(self.size * 64 * NUMBER)
         self.node_mask = cython.cast(cython.p_ulonglong, malloc(self.size * cython.sizeof(cython.ulonglong)))
+        self.bend = cython.cast(cython.p_int, malloc(self.size * cython.sizeof(cython.int)))
+        self.bend_length = malloc(self.size * SPREAD)
         for k in range(256):
             for i in range(8):
-                self.bits[8 * k + i] = self.bits_single[8 * k + i] = (k >> i) & 1
+                if single:
+                    cython.cast(cython.p_float, self.bits)[8 * k + i] = (k >> i) & 1
+                else:
+                    cython.cast(cython.p_double, self.bits)[8 * k + i] = (k >> i) & 1
 
     def __dealloc__(self):
         free(self.bits)
-        free(self.bits_single)
+        free(self.ux)
+        free(self.uy)
+        free(self.kx)
+        free(self.ky)
+        free(self.values)
+        free(self.spread)
         free(self.alpha)
         free(self.nodes)
         free(self.node_mask)
+        free(self.bend)
+        free(self.bend_length)
 
     @cython.cfunc
     @cython.nogil
@@ -42,13 +73,12 @@ class Desk:
         slot: cython.int = self.used
         if slot == self.size:
             self.size *= 2
-            self.nodes = cython.cast(
-                cython.p_double, realloc(self.nodes, self.size * 64 * cython.sizeof(cython.double))
-            )
-            self.nodes_single = cython.cast(cython.p_float, self.nodes)
+            self.nodes = realloc(self.nodes, self.size * 64 * NUMBER)
             self.node_mask = cython.cast(
                 cython.p_ulonglong, realloc(self.node_mask, self.size * cython.sizeof(cython.ulonglong))
             )
+            self.bend = cython.cast(cython.p_int, realloc(self.bend, self.size * cython.sizeof(cython.int)))
+            self.bend_length = realloc(self.bend_length, self.size * SPREAD)
         self.node_mask[slot] = seen
         self.used = slot + 1
         return slot

@@ -246,12 +246,13 @@ def rows(
         for a in range(tiles[0], tiles[1]):
             at_y = y_begin[a]
             ny = y_begin[a + 1] - at_y
+            tile.place_in_row(y_cell[a], cython.address(y[at_y]), ny)
             for b in range(tiles[2], tiles[3]):
-                if tile.scene.clear(x_cell[b] - 1, y_cell[a] - 1, x_cell[b] + 1, y_cell[a] + 1):
+                if tile.scene.empty_around(x_cell[b], y_cell[a]):
                     continue
                 at_x = x_begin[b]
                 nx = x_begin[b + 1] - at_x
-                tile.place(x_cell[b], y_cell[a], cython.address(x[at_x]), nx, cython.address(y[at_y]), ny)
+                tile.place(x_cell[b], cython.address(x[at_x]), nx)
                 if not tile.see():
                     continue
                 matters = True

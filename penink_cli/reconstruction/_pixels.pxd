@@ -1,5 +1,3 @@
-cdef unsigned long long ALL
-
 cdef class Pixels:
     cdef int nx, ny
     cdef double* px
@@ -7,7 +5,8 @@ cdef class Pixels:
     cdef double step_x, step_y
     cdef int cx, cy
     cdef float mid_x, mid_y, half_x, half_y  # the middle of the pixels within the cell, and their half extent
-    cdef void stand(self, int cx, int cy, double* px, int nx, double* py, int ny) noexcept nogil
+    cdef void stand_in_row(self, int cy, double* py, int ny) noexcept nogil
+    cdef void stand_in_column(self, int cx, double* px, int nx) noexcept nogil
     cdef unsigned long long pixels(self) noexcept nogil
     cdef int box_side(self, double ax, double ay, double bx, double by) noexcept nogil
     cdef unsigned long long half_plane(self, double ax, double ay, double bx, double by, bint from_sample) noexcept nogil

@@ -8,30 +8,36 @@ exact, however coarse the quick test.
 """
 
 import cython
-from cython.cimports.libc.math import fabs, fabsf, sqrt
+from cython.cimports.libc.math import fabs, sqrt
+from cython.cimports.penink_cli.reconstruction._lanes import (
+    Four,
+    all_four,
+    beyond_in_columns,
+    beyond_in_rows,
+    close_four,
+    four_at,
+    less_four,
+    lowest,
+    more_four,
+)
 from cython.cimports.penink_cli.reconstruction._scene import side_of_query, side_of_vertex
 
 COMPILED = cython.compiled
 
-ALL = 0xFFFFFFFFFFFFFFFF
+ALL = cython.declare(cython.ulonglong, 0xFFFFFFFFFFFFFFFF)
 ROW = cython.declare(cython.ulonglong, 0xFF)
 COLUMN = cython.declare(cython.ulonglong, 0x0101010101010101)
 SLACK = cython.declare(cython.float, 1e-5)  # of the quick tests, in samples: ten times the worst rounding of a float
 NEAR = cython.declare(cython.float, 2e-5)  # of the masks, in pixels: ten times the worst rounding of a float
 RAMP = cython.declare(cython.float[8])  # 0 … 7
-ROWS = cython.declare(cython.ulonglong[10])  # the first row of pixels from column k on, none from 8 on
-COLUMNS = cython.declare(cython.ulonglong[10])  # the first column from row k on
 
 
 @cython.cfunc
 def tabulate() -> cython.void:
-    """Fill the tables above."""
+    """Fill the table above."""
     k: cython.int
     for k in range(8):
         RAMP[k] = k
-    for k in range(10):
-        ROWS[k] = (ROW << k) & ROW
-        COLUMNS[k] = COLUMN << (8 * k) if k < 8 else 0
 
 
 tabulate()
@@ -44,26 +50,24 @@ class Pixels:
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)
-    def stand(
-        self,
-        cx: cython.int,
-        cy: cython.int,
-        px: cython.p_double,
-        nx: cython.int,
-        py: cython.p_double,
-        ny: cython.int,
-    ) -> cython.void:
-        """Be the pixels px × py of the cell whose top-left sample is (row cy, column cx)."""
-        self.cx = cx
+    def stand_in_row(self, cy: cython.int, py: cython.p_double, ny: cython.int) -> cython.void:
+        """Have the rows of pixels py, in the cells below the row cy of samples."""
         self.cy = cy
-        self.px = px
         self.py = py
-        self.nx = nx
         self.ny = ny
-        self.mid_x = cython.cast(cython.float, 0.5 * (px[0] + px[nx - 1]) - cx)
         self.mid_y = cython.cast(cython.float, 0.5 * (py[0] + py[ny - 1]) - cy)
-        self.half_x = cython.cast(cython.float, 0.5 * (px[nx - 1] - px[0])) + SLACK
         self.half_y = cython.cast(cython.float, 0.5 * (py[ny - 1] - py[0])) + SLACK
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def stand_in_column(self, cx: cython.int, px: cython.p_double, nx: cython.int) -> cython.void:
+        """Have the columns of pixels px, in the cells right of the column cx of samples."""
+        self.cx = cx
+        self.px = px
+        self.nx = nx
+        self.mid_x = cython.cast(cython.float, 0.5 * (px[0] + px[nx - 1]) - cx)
+        self.half_x = cython.cast(cython.float, 0.5 * (px[nx - 1] - px[0])) + SLACK
 
     @cython.cfunc
     @cython.nogil
@@ -102,55 +106,32 @@ class Pixels:
         by_rows: cython.bint = fabs(gx) >= fabs(gy)
         main: cython.double = gx if by_rows else gy
         minor: cython.double = gy if by_rows else gx
-        start: cython.float
-        slope: cython.float
-        low: cython.float = -0.75  # not near a pixel
-        high: cython.float = 8.25
-        half: cython.float = 0.5
-        one: cython.float = 1
-        v: cython.float
-        beyond = cython.declare(cython.int[8])
-        offset = cython.declare(cython.float[8])
-        near: cython.int = 0
-        j: cython.Py_ssize_t
+        start: Four
+        slope: Four
+        first: Four
+        second: Four
+        near: cython.int
+        j: cython.int
         m: cython.ulonglong = 0
         if main == 0.0:  # a is b: every pixel is a tie
             return self.exactly(ax, ay, bx, by, from_sample, m, ALL)
         # Along line j of pixels the sign changes at v = start + j·slope; pixels beyond have the sign of main.
         main = 1.0 / main
-        start = cython.cast(cython.float, -value * main)
-        slope = cython.cast(cython.float, -minor * main)
-        for j in range(8):
-            v = start + RAMP[j] * slope
-            v = v if v > low else low
-            v = v if v < high else high
-            beyond[j] = cython.cast(cython.int, v + one)
-            offset[j] = fabsf(v - cython.cast(cython.int, v + half))
-            near += 1 if offset[j] < NEAR else 0
-        if by_rows:
-            m = (
-                ROWS[beyond[0]] | ROWS[beyond[1]] << 8 | ROWS[beyond[2]] << 16 | ROWS[beyond[3]] << 24
-                | ROWS[beyond[4]] << 32 | ROWS[beyond[5]] << 40 | ROWS[beyond[6]] << 48 | ROWS[beyond[7]] << 56
-            )  # fmt: skip
-        else:
-            m = (
-                COLUMNS[beyond[0]] | COLUMNS[beyond[1]] << 1 | COLUMNS[beyond[2]] << 2 | COLUMNS[beyond[3]] << 3
-                | COLUMNS[beyond[4]] << 4 | COLUMNS[beyond[5]] << 5 | COLUMNS[beyond[6]] << 6 | COLUMNS[beyond[7]] << 7
-            )  # fmt: skip
+        start = all_four(cython.cast(cython.float, -value * main))
+        slope = all_four(cython.cast(cython.float, -minor * main))
+        first = start + four_at(RAMP) * slope
+        second = start + four_at(RAMP + 4) * slope
+        # Far from the pixels it is not near one: 8.25 and −0.75 stand for all that is beyond them.
+        first = less_four(more_four(first, all_four(-0.75)), all_four(8.25))
+        second = less_four(more_four(second, all_four(-0.75)), all_four(8.25))
+        m = beyond_in_rows(first, second) if by_rows else beyond_in_columns(first, second)
         if main < 0.0:
             m = ~m
-        if near:
-            for j in range(8):
-                if offset[j] < NEAR:
-                    m = self.exactly(
-                        ax,
-                        ay,
-                        bx,
-                        by,
-                        from_sample,
-                        m,
-                        ROW << (8 * j) if by_rows else COLUMN << cython.cast(cython.ulonglong, j),
-                    )
+        near = close_four(first, NEAR) | (close_four(second, NEAR) << 4)
+        while near:
+            j = lowest(near)
+            near &= near - 1
+            m = self.exactly(ax, ay, bx, by, from_sample, m, ROW << (8 * j) if by_rows else COLUMN << j)
         return m
 
     @cython.cfunc

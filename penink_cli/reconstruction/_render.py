@@ -1,14 +1,27 @@
 # cython: language_level=3, boundscheck=False, wraparound=False, cdivision=True
-"""The reconstruction near edges: equations 4 and 5 for the pixels of one tile after the other.
+"""The reconstruction near edges: equation 5 for the pixels of one tile after the other, by rows of eight.
 
-In double, or for 8-bit output in float, which vectorises twice as wide; what pixels see is exact in both. Wider vectors
-are not worth a second build: with AVX2 500 scattered edges at 128² → 1024² took 3 % less, the separable pass 18 %.
+In double, or for 8-bit output in float, which vectorises twice as wide; what pixels see is exact in both. A row is a
+few vectors, ROW of them: two of floats, four of doubles. Wider vectors are not worth a second build.
 """
 
 import cython
-from cython.cimports.libc.math import sqrt, sqrtf
 from cython.cimports.libc.string import memcpy
 from cython.cimports.penink_cli.reconstruction._desk import Desk
+from cython.cimports.penink_cli.reconstruction._lanes import (
+    Four,
+    Lanes,
+    Two,
+    above,
+    chosen,
+    fill,
+    keep_bytes,
+    lane,
+    lanes_at,
+    less,
+    more,
+)
+from cython.cimports.penink_cli.reconstruction._shade import attenuate
 from cython.cimports.penink_cli.reconstruction._tile import Tile
 
 COMPILED = cython.compiled
@@ -18,386 +31,257 @@ stored = cython.fused_type(cython.uchar, cython.ushort, cython.double)
 
 T1 = cython.declare(cython.double, 0.5)  # below this sum of cubic weights the B-spline is blended in
 T2 = cython.declare(cython.double, 1e-4)  # below this sum of B-spline weights plain convolution is faded in
-FAR = cython.declare(cython.float, 1e30)  # a distance no path has
-
-
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def rows_of(pixels: cython.ulonglong) -> cython.int:
-    """The rows that a set of pixels touches: the bytes of the word that are not zero, gathered by a multiplication."""
-    low: cython.ulonglong = 0x7F7F7F7F7F7F7F7F
-    first: cython.ulonglong = 0x0101010101010101
-    gather: cython.ulonglong = 0x0102040810204080
-    pixels = (((pixels & low) + low) | pixels) >> 7 & first
-    return cython.cast(cython.int, (pixels * gather) >> 56)
-
-
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def measure(
-    out: cython.pointer[real],
-    bits: cython.pointer[real],
-    seen: cython.ulonglong,
-    ux: cython.pointer[real],
-    uy: cython.pointer[real],
-    ny: cython.int,
-    x: real,
-    y: real,
-) -> cython.void:
-    """Distance of each pixel of the tile from a node, FAR from where it is not seen."""
-    r: cython.Py_ssize_t
-    c: cython.Py_ssize_t
-    far: real = FAR
-    across: real[8]
-    mine: real[8]
-    down: real
-    veil: cython.pointer[real]
-    for c in range(8):
-        across[c] = (ux[c] - x) * (ux[c] - x)
-    for r in range(ny):
-        veil = bits + 8 * (~(seen >> (8 * r)) & 255)
-        down = (uy[r] - y) * (uy[r] - y)
-        for c in range(8):
-            if real is cython.float:
-                mine[c] = sqrtf(across[c] + down) + veil[c] * far
-            else:
-                mine[c] = sqrt(across[c] + down) + veil[c] * far
-        memcpy(out + 8 * r, mine, 8 * cython.sizeof(out[0]))
-
-
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def fade(
-    alpha: cython.pointer[real],
-    bits: cython.pointer[real],
-    hidden: cython.ulonglong,
-    ux: cython.pointer[real],
-    uy: cython.pointer[real],
-    ny: cython.int,
-    x: real,
-    y: real,
-    bend: cython.pointer[real],
-    length: real,
-) -> cython.void:
-    """Equation 4 for one sample, in the rows where pixels do not see it; lengths in units of the radius.
-
-    bend: distance of each pixel to a bend, which is `length` from the sample. With u = 1 − detour / r clamped to
-    0 … 1 the attenuation 1 − S(1 − u) is S(u), and as no path is shorter than the straight line only 0 needs a test.
-    """
-    r: cython.Py_ssize_t
-    c: cython.Py_ssize_t
-    byte: cython.int
-    u: real
-    down: real
-    zero: real = 0
-    three: real = 3
-    across: real[8]
-    mine: real[8]
-    veil: cython.pointer[real]
-    bare: cython.pointer[real]
-    near: cython.pointer[real]
-    length -= 1
-    for c in range(8):
-        across[c] = (ux[c] - x) * (ux[c] - x)
-    for r in range(ny):
-        byte = (hidden >> (8 * r)) & 255
-        if byte == 0:
-            continue
-        veil = bits + 8 * byte
-        bare = bits + 8 * (byte ^ 255)
-        near = bend + 8 * r
-        down = (uy[r] - y) * (uy[r] - y)
-        for c in range(8):
-            if real is cython.float:
-                u = sqrtf(across[c] + down) - (near[c] + length)
-            else:
-                u = sqrt(across[c] + down) - (near[c] + length)
-            u = u if u > zero else zero
-            mine[c] = u * u * (three - (u + u)) * veil[c] + bare[c]
-        memcpy(alpha + 8 * r, mine, 8 * cython.sizeof(alpha[0]))
-
-
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def attenuate(desk: Desk, tile: Tile, ux: cython.pointer[real], uy: cython.pointer[real], radius: real) -> cython.void:
-    """Equation 4 for every sample and pixel of a tile, from what the tile sees and the bends of the hidden samples.
-
-    ux, uy: the pixels, relative to the cell and in units of the radius.
-    """
-    s: cython.int
-    k: cython.Py_ssize_t
-    m: cython.int
-    at: cython.int
-    end: cython.int
-    node: cython.int
-    slot: cython.int
-    v: cython.int
-    byte: cython.int
-    bends: cython.int
-    first: cython.int = 0
-    limit: cython.double
-    d: cython.double
-    t: real
-    length: real = 0
-    row: cython.Py_ssize_t
-    hidden: cython.ulonglong
-    seen: cython.ulonglong
-    bits: cython.pointer[real]
-    nodes: cython.pointer[real]
-    alpha: cython.pointer[real]
-    near: cython.pointer[real]
-    best: real[64]
-    ny: cython.int = tile.ny
-    n: cython.Py_ssize_t = 8 * ny
-    desk.used = 0
-    if real is cython.float:
-        bits = desk.bits_single
-    else:
-        bits = desk.bits
-    for s in range(16):
-        hidden = tile.hidden[s]
-        desk.mixed[s] = desk.shaded[s] = 0
-        if hidden == 0:
-            continue
-        bends = 0
-        limit = tile.farthest(tile.column[s & 3], tile.row[s >> 2]) + radius
-        at = tile.finder.bends_of(tile.row[s >> 2], tile.column[s & 3])
-        row = cython.cast(cython.Py_ssize_t, tile.row[s >> 2] - tile.finder.row0) * tile.scene.width
-        end = at + tile.finder.count[row + tile.column[s & 3]]
-        near = cython.NULL
-        for m in range(at, end):
-            d = tile.finder.pool_length[m]
-            if d >= limit:
-                break
-            node = tile.finder.pool_node[m]
-            v = tile.scene.node_vertex[node]
-            if tile.node_stamp[node] != tile.now:
-                if d + tile.nearest(tile.scene.vx[v], tile.scene.vy[v]) >= limit:
-                    continue
-                tile.node_stamp[node] = tile.now
-                seen = tile.node_mask(node)
-                if seen == 0:
-                    tile.node_place[node] = -1
-                    continue
-                slot = desk.another_node(seen)
-                tile.node_place[node] = slot
-                if real is cython.float:
-                    nodes = desk.nodes_single
-                else:
-                    nodes = desk.nodes
-                measure(
-                    nodes + 64 * slot, bits, seen, ux, uy, ny,
-                    (tile.scene.vx[v] - tile.cx) / radius, (tile.scene.vy[v] - tile.cy) / radius,
-                )  # fmt: skip
-            slot = tile.node_place[node]
-            if slot < 0 or not (desk.node_mask[slot] & hidden):
-                continue
-            if real is cython.float:
-                nodes = desk.nodes_single + 64 * slot
-            else:
-                nodes = desk.nodes + 64 * slot
-            if bends == 0:
-                first = slot
-                length = d / radius
-            else:
-                if bends == 1:
-                    near = nodes + 64 * (first - slot)
-                    for k in range(n):
-                        best[k] = near[k] + length
-                length = d / radius
-                for k in range(n):
-                    t = nodes[k] + length
-                    best[k] = t if t < best[k] else best[k]
-            bends += 1
-        if real is cython.float:
-            alpha = desk.alpha_single + 64 * s
-            nodes = desk.nodes_single
-        else:
-            alpha = desk.alpha + 64 * s
-            nodes = desk.nodes
-        desk.shaded[s] = desk.mixed[s] = rows_of(hidden)
-        if bends == 0:
-            desk.mixed[s] &= rows_of(~hidden & tile.pixels())
-            for k in range(ny):
-                byte = (hidden >> (8 * k)) & 255
-                memcpy(alpha + 8 * k, bits + 8 * (byte ^ 255), 8 * cython.sizeof(alpha[0]))
-        elif bends == 1:
-            fade(alpha, bits, hidden, ux, uy, ny, tile.sx[s] / radius, tile.sy[s] / radius, nodes + 64 * first, length)
-        elif bends:
-            fade(alpha, bits, hidden, ux, uy, ny, tile.sx[s] / radius, tile.sy[s] / radius, best, 0)
 
 
 @cython.cfunc
 @cython.nogil
 @cython.exceptval(check=False)
 def add_up(
+    bits: cython.pointer[Lanes],
     desk: Desk,
-    f: cython.pointer[real],
-    kx: cython.pointer[real],
-    stride: cython.Py_ssize_t,
-    ky: cython.pointer[real],
-    ny: cython.int,
-    top: cython.pointer[real],
-    bottom: cython.pointer[real],
+    kernel: cython.int,
+    r: cython.int,
+    shaded: cython.int,
+    notes: cython.int,
+    top: cython.pointer[Lanes],
+    bottom: cython.pointer[Lanes],
 ) -> cython.void:
-    """Numerator and denominator of equation 5 for every pixel.
+    """Numerator and denominator of equation 5 for row r of the pixels, kernel 0 the cubic, 1 the B-spline.
 
-    f: the 16 samples. kx: 4 × stride, weights of the columns from the tile's first on. ky: 8 × 4, of its rows. In each
-    row of pixels the samples that count fully are summed as separable, those that do not count at all are left out.
-    The sums are kept in local arrays: nothing can alias them, so the loops vectorise.
+    Samples that all of them see are summed as separable, of the others those that count somewhere are noted.
     """
-    s: cython.Py_ssize_t
-    i: cython.Py_ssize_t
-    j: cython.Py_ssize_t
-    r: cython.Py_ssize_t
-    c: cython.Py_ssize_t
-    w: real
-    v: real
-    y: real
-    alpha: cython.pointer[real]
-    all_alpha: cython.pointer[real]
-    bits: cython.pointer[real]
-    mask: cython.pointer[real]
-    kx1: cython.pointer[real] = kx + stride
-    kx2: cython.pointer[real] = kx1 + stride
-    kx3: cython.pointer[real] = kx2 + stride
-    column: cython.pointer[real]
-    rows: real[4]
-    ones: real[4]
-    t: real[64]
-    b: real[64]
-    shaded: cython.uint[4]  # four samples a word
-    memcpy(shaded, desk.shaded, 16)
-    if real is cython.float:
-        all_alpha = desk.alpha_single
-        bits = desk.bits_single
-    else:
-        all_alpha = desk.alpha
-        bits = desk.bits
-    for r in range(ny):
-        for i in range(4):
-            rows[i] = 0
-            ones[i] = 0
-        for j in range(4):
-            y = ky[4 * r + j]
-            mask = bits + 8 * (~((((shaded[j] >> r) & 0x01010101) * 0x10204080) >> 28) & 15)
-            for i in range(4):
-                w = y * mask[i]
-                ones[i] += w
-                rows[i] += w * f[4 * j + i]
-        for c in range(8):
-            t[8 * r + c] = rows[0] * kx[c] + rows[1] * kx1[c] + rows[2] * kx2[c] + rows[3] * kx3[c]
-            b[8 * r + c] = ones[0] * kx[c] + ones[1] * kx1[c] + ones[2] * kx2[c] + ones[3] * kx3[c]
-    for s in range(16):
-        if desk.mixed[s] == 0:
-            continue
-        column = kx + stride * (s & 3)
-        j = s >> 2
-        v = f[s]
-        for r in range(ny):
-            if not (desk.mixed[s] >> r) & 1:
-                continue
-            y = ky[4 * r + j]
-            alpha = all_alpha + 64 * s + 8 * r
-            for c in range(8):
-                w = y * column[c] * alpha[c]
-                b[8 * r + c] += w
-                t[8 * r + c] += w * v
-    memcpy(top, t, 8 * ny * cython.sizeof(t[0]))
-    memcpy(bottom, b, 8 * ny * cython.sizeof(b[0]))
+    i: cython.int
+    j: cython.int
+    m: cython.int
+    s: cython.int
+    h: cython.Py_ssize_t
+    row: cython.Py_ssize_t = 2 if Lanes is Four else 4
+    half: cython.Py_ssize_t = 1 if Lanes is Four else 2
+    w: Lanes
+    f: Lanes
+    y: Lanes
+    sums: Lanes[2]  # for each column of samples, those of weight times value
+    ones: Lanes[2]  # and of the weights
+    t: Lanes[4]
+    b: Lanes[4]
+    mask: cython.pointer[Lanes]
+    alpha: cython.pointer[Lanes]
+    column: cython.pointer[Lanes]
+    kx: cython.pointer[Lanes] = lanes_at(desk.kx, bits) + 4 * row * kernel
+    ky: cython.pointer[Lanes] = lanes_at(desk.ky, bits) + 4 * (8 * kernel + r)
+    values: cython.pointer[Lanes] = lanes_at(desk.values, bits)
+    spread: cython.pointer[Lanes] = lanes_at(desk.spread, bits)
+    for h in range(half):
+        fill(cython.address(sums[h]), 0.0)
+        fill(cython.address(ones[h]), 0.0)
+    shaded = ~shaded
+    for j in range(4):
+        mask = bits + row * ((shaded >> (4 * j)) & 15)
+        y = ky[j]
+        for h in range(half):
+            w = y * mask[h]
+            ones[h] = ones[h] + w
+            sums[h] = sums[h] + w * values[half * j + h]
+    f = lane(sums, 0)
+    y = lane(ones, 0)
+    for h in range(row):
+        t[h] = f * kx[h]
+        b[h] = y * kx[h]
+    for i in range(1, 4):
+        f = lane(sums, i)
+        y = lane(ones, i)
+        for h in range(row):
+            t[h] = t[h] + f * kx[row * i + h]
+            b[h] = b[h] + y * kx[row * i + h]
+    for m in range(16 * r, 16 * r + notes):
+        s = desk.note[m]
+        alpha = lanes_at(desk.note_alpha[m], bits)
+        y = ky[s >> 2]
+        f = spread[s]
+        column = kx + row * (s & 3)
+        for h in range(row):
+            w = y * column[h] * alpha[h]
+            b[h] = b[h] + w
+            t[h] = t[h] + w * f
+    for h in range(row):
+        top[h] = t[h]
+        bottom[h] = b[h]
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def any_below(v: cython.pointer[Lanes], limit: Lanes) -> cython.bint:
+    """Whether any number of a row is below the limit."""
+    h: cython.Py_ssize_t
+    row: cython.Py_ssize_t = 2 if Lanes is Four else 4
+    found: cython.int = 0
+    for h in range(row):
+        found |= above(limit, v[h])
+    return found != 0
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def smooth(t: Lanes, one: Lanes) -> Lanes:
+    """S(t) = 3t² − 2t³ on 0 … 1, clamped."""
+    three: Lanes
+    t = less(t, one)
+    t = more(t, one - one)
+    fill(cython.address(three), 3.0)
+    return t * t * (three - (t + t))
 
 
 @cython.cfunc
 @cython.nogil
 @cython.exceptval(check=False)
 def blend(
+    bits: cython.pointer[Lanes], desk: Desk, r: cython.int, only_b: cython.bint, out: cython.pointer[Lanes]
+) -> cython.void:
+    """The values of row r of a tile that `attenuate` has made its notes of."""
+    h: cython.Py_ssize_t
+    row: cython.Py_ssize_t = 2 if Lanes is Four else 4
+    top: Lanes[4]
+    bottom: Lanes[4]
+    top_b: Lanes[4]
+    bottom_b: Lanes[4]
+    w: Lanes
+    one: Lanes
+    half: Lanes
+    threshold: Lanes
+    fill(cython.address(one), 1.0)
+    fill(cython.address(half), T1)
+    fill(cython.address(threshold), T2)
+    if not only_b:
+        add_up(bits, desk, 0, r, desk.shaded[r], desk.notes[r], top, bottom)
+        if not any_below(bottom, half):
+            for h in range(row):
+                out[h] = top[h] / bottom[h]
+            return
+    add_up(bits, desk, 1, r, desk.shaded[r], desk.notes[r], top_b, bottom_b)
+    for h in range(row):
+        if only_b:
+            out[h] = top_b[h] / bottom_b[h]
+        else:
+            w = smooth(bottom[h] / half, one)  # ω = S(den / T1)
+            out[h] = (w * top[h] + (one - w) * top_b[h]) / (w * bottom[h] + (one - w) * bottom_b[h])
+    if any_below(bottom_b, threshold):  # starved: plain convolution, across the edges
+        add_up(bits, desk, 1 if only_b else 0, r, 0, 0, top, bottom)
+        for h in range(row):
+            w = smooth(bottom_b[h] / threshold, one)
+            out[h] = chosen(bottom_b[h], w * out[h] + (one - w) * top[h], top[h])
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def keep(
+    values: cython.pointer[Lanes], n: cython.int, maxval: cython.double, out: cython.pointer[stored]
+) -> cython.void:
+    """Store n values of a row: clamped and rounded half up, or in double as they are."""
+    c: cython.int
+    h: cython.Py_ssize_t
+    row: cython.Py_ssize_t = 2 if Lanes is Four else 4
+    v: cython.double
+    most: Lanes
+    zero: Lanes
+    clamped: Lanes[4]
+    eight: cython.uchar[8]
+    fill(cython.address(most), maxval)
+    fill(cython.address(zero), 0.0)
+    for h in range(row):
+        clamped[h] = values[h] if stored is cython.double else less(more(values[h], zero), most)
+    if Lanes is Four and stored is cython.uchar:
+        keep_bytes(clamped[0], clamped[1], out if n == 8 else eight)
+        if n < 8:
+            memcpy(out, eight, n)
+    else:
+        for c in range(n):
+            if Lanes is Four:
+                v = cython.cast(cython.p_float, clamped)[c]
+            else:
+                v = cython.cast(cython.p_double, clamped)[c]
+            if stored is cython.double:
+                out[c] = v
+            else:
+                out[c] = cython.cast(cython.int, v + 0.5)
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def lay_out_rows(
+    bits: cython.pointer[Lanes],
+    desk: Desk,
+    tile: Tile,
+    yc: cython.pointer[real],
+    yb: cython.pointer[real],
+    radius: cython.double,
+) -> cython.void:
+    """Lay ready what belongs to the rows of pixels of a tile; yc, yb: (8, 4) weights. `bits` only tells the lanes."""
+    k: cython.int
+    for k in range(4 * tile.ny):
+        fill(lanes_at(desk.ky, bits) + k, yc[k])
+        fill(lanes_at(desk.ky, bits) + 32 + k, yb[k])
+    for k in range(tile.ny):
+        fill(lanes_at(desk.uy, bits) + k, (tile.py[k] - tile.cy) / radius)
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def lay_out(
     desk: Desk,
     tile: Tile,
     samples: cython.pointer[real],
     xc: cython.pointer[real],
     xb: cython.pointer[real],
-    yc: cython.pointer[real],
-    yb: cython.pointer[real],
     stride: cython.Py_ssize_t,
-    radius: real,
-    only_b: cython.bint,
-    out: cython.pointer[real],
+    ux: cython.pointer[real],
 ) -> cython.void:
-    """The values of a tile that `see` found edges in; samples: unpadded, row by row. xc, xb: as kx of `add_up`."""
-    k: cython.Py_ssize_t
-    c: cython.Py_ssize_t
-    s: cython.int
-    n: cython.Py_ssize_t = 8 * tile.ny
-    f: real[16]
-    ux: real[8]
-    uy: real[8]
-    top: real[64]
-    bottom: real[64]
-    top_b: real[64]
-    bottom_b: real[64]
-    t: real
-    w: real
-    low: cython.int
-    value: real[64]
-    half: real = T1
-    threshold: real = T2
-    zero: real = 0
-    one: real = 1
-    three: real = 3
-    for c in range(8):  # beyond the tile's own columns come those of the next; what they give is not used
-        ux[c] = (tile.px[c] - tile.cx) / radius
-    for k in range(tile.ny):
-        uy[k] = (tile.py[k] - tile.cy) / radius
-    for s in range(16):
-        f[s] = samples[cython.cast(cython.Py_ssize_t, tile.row[s >> 2]) * tile.scene.width + tile.column[s & 3]]
-    attenuate(desk, tile, ux, uy, radius)
-    if not only_b:
-        add_up(desk, f, xc, stride, yc, tile.ny, top, bottom)
-        low = 0
-        for k in range(n):
-            low += 1 if bottom[k] < half else 0
-        if low == 0:
-            for k in range(n):
-                value[k] = top[k] / bottom[k]
-            memcpy(out, value, n * cython.sizeof(value[0]))
-            return
-    add_up(desk, f, xb, stride, yb, tile.ny, top_b, bottom_b)
-    low = 0
-    for k in range(n):
-        low += 1 if bottom_b[k] < threshold else 0
-    if only_b:
-        for k in range(n):
-            value[k] = top_b[k] / bottom_b[k]
+    """Lay ready the samples of a tile, and what belongs to its columns; what is beyond them belongs to the next."""
+    i: cython.Py_ssize_t
+    j: cython.Py_ssize_t
+    f: cython.pointer[real]
+    kx: cython.pointer[real]
+    values: cython.pointer[real]
+    if real is cython.float:
+        kx = cython.cast(cython.p_float, desk.kx)
+        values = cython.cast(cython.p_float, desk.values)
     else:
-        for k in range(n):
-            t = bottom[k] / half  # ω = S(den / T1)
-            t = t if t < one else one
-            t = t if t > zero else zero
-            w = t * t * (three - (t + t))
-            value[k] = (w * top[k] + (one - w) * top_b[k]) / (w * bottom[k] + (one - w) * bottom_b[k])
-    if low == 0:
-        memcpy(out, value, n * cython.sizeof(value[0]))
-        return
-    # Starved pixels: plain convolution, across the edges.
-    for s in range(16):
-        desk.mixed[s] = desk.shaded[s] = 0
-    if only_b:
-        add_up(desk, f, xb, stride, yb, tile.ny, top, bottom)
-    else:
-        add_up(desk, f, xc, stride, yc, tile.ny, top, bottom)
-    for k in range(n):
-        t = bottom_b[k] / threshold
-        if t <= zero:
-            out[k] = top[k]
-        elif t >= one:
-            out[k] = value[k]
-        else:
-            w = t * t * (three - (t + t))
-            out[k] = w * value[k] + (one - w) * top[k]
+        kx = cython.cast(cython.p_double, desk.kx)
+        values = cython.cast(cython.p_double, desk.values)
+    for i in range(4):
+        memcpy(kx + 8 * i, xc + stride * i, 8 * cython.sizeof(xc[0]))
+        memcpy(kx + 32 + 8 * i, xb + stride * i, 8 * cython.sizeof(xc[0]))
+    memcpy(desk.ux, ux, 8 * cython.sizeof(xc[0]))
+    for j in range(4):
+        f = samples + cython.cast(cython.Py_ssize_t, tile.row[j]) * tile.scene.width
+        for i in range(4):
+            values[4 * j + i] = f[tile.column[i]]
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def paint(
+    bits: cython.pointer[Lanes],
+    desk: Desk,
+    tile: Tile,
+    radius: cython.double,
+    only_b: cython.bint,
+    maxval: cython.double,
+    out: cython.pointer[stored],
+    stride: cython.Py_ssize_t,
+) -> cython.void:
+    """Reconstruct a tile that `see` found edges in."""
+    r: cython.int
+    values: Lanes[4]
+    attenuate(bits, desk, tile, radius)
+    for r in range(tile.ny):
+        blend(bits, desk, r, only_b, values)
+        keep(values, tile.nx, maxval, out + stride * r)
 
 
 def retouch(
@@ -405,6 +289,7 @@ def retouch(
     desk: Desk,
     samples: real[:, ::1],
     x: cython.double[::1],
+    ux: real[::1],
     xc: real[:, ::1],
     xb: real[:, ::1],
     x_cell: cython.int[::1],
@@ -421,53 +306,37 @@ def retouch(
 ) -> None:
     """Reconstruct every tile that has an edge within the cells that its samples span.
 
-    x: (n + 8,) positions of the columns, sample units. xc, xb: (4, n + 8) taps. x_cell, x_begin: (t,), (t + 1,) the
-    cell and the first column of each tile, left to right. For y likewise, but (rows, 4) taps. out: (rows, n).
+    x: (n + 8,) positions of the columns, sample units; ux: the same relative to the cell and in units of the radius.
+    xc, xb: (4, n + 8) taps. x_cell, x_begin: (t,), (t + 1,) the cell and the first column of each tile, left to right.
+    For y likewise, but (rows, 4) taps. out: (rows, n).
     """
     a: cython.Py_ssize_t
     b: cython.Py_ssize_t
-    r: cython.Py_ssize_t
     c: cython.Py_ssize_t
-    nx: cython.int
-    ny: cython.int
-    v: real
-    half: real = 0.5
-    zero: real = 0
-    values: real[64]
-    rounded: stored[64]
+    four: cython.pointer[Four] = cython.cast(cython.pointer[Four], desk.bits)
+    two: cython.pointer[Two] = cython.cast(cython.pointer[Two], desk.bits)
+    at: cython.pointer[stored]
     with cython.nogil:
         for a in range(y_cell.shape[0]):
-            ny = y_begin[a + 1] - y_begin[a]
+            c = y_begin[a]
+            tile.place_in_row(y_cell[a], cython.address(y[c]), y_begin[a + 1] - y_begin[a])
+            if real is cython.float:
+                lay_out_rows(four, desk, tile, cython.address(yc[c, 0]), cython.address(yb[c, 0]), radius)
+            else:
+                lay_out_rows(two, desk, tile, cython.address(yc[c, 0]), cython.address(yb[c, 0]), radius)
             for b in range(x_cell.shape[0]):
-                if tile.scene.clear(x_cell[b] - 1, y_cell[a] - 1, x_cell[b] + 1, y_cell[a] + 1):
+                if tile.scene.empty_around(x_cell[b], y_cell[a]):
                     continue
-                nx = x_begin[b + 1] - x_begin[b]
-                tile.place(x_cell[b], y_cell[a], cython.address(x[x_begin[b]]), nx, cython.address(y[y_begin[a]]), ny)
+                c = x_begin[b]
+                tile.place(x_cell[b], cython.address(x[c]), x_begin[b + 1] - x_begin[b])
                 if not tile.see():
                     continue
-                blend(
-                    desk, tile, cython.address(samples[0, 0]),
-                    cython.address(xc[0, x_begin[b]]), cython.address(xb[0, x_begin[b]]),
-                    cython.address(yc[y_begin[a], 0]), cython.address(yb[y_begin[a], 0]),
-                    xc.shape[1], radius, only_b, values,
+                lay_out(
+                    desk, tile, cython.address(samples[0, 0]), cython.address(xc[0, c]), cython.address(xb[0, c]),
+                    xc.shape[1], cython.address(ux[c]),
                 )  # fmt: skip
-                if stored is cython.double:
-                    for r in range(ny):
-                        for c in range(nx):
-                            out[y_begin[a] + r, x_begin[b] + c] = values[8 * r + c]
+                at = cython.address(out[y_begin[a], c])
+                if real is cython.float:
+                    paint(four, desk, tile, radius, only_b, maxval, at, out.shape[1])
                 else:
-                    for r in range(8 * ny):
-                        v = values[r]
-                        v = v if v > zero else zero
-                        v = v if v < maxval else maxval
-                        rounded[r] = cython.cast(cython.int, v + half)
-                    if nx == 8:
-                        for r in range(ny):
-                            memcpy(
-                                cython.address(out[y_begin[a] + r, x_begin[b]]), rounded + 8 * r,
-                                8 * cython.sizeof(rounded[0]),
-                            )  # fmt: skip
-                    else:
-                        for r in range(ny):
-                            for c in range(nx):
-                                out[y_begin[a] + r, x_begin[b] + c] = rounded[8 * r + c]
+                    paint(two, desk, tile, radius, only_b, maxval, at, out.shape[1])

@@ -46,6 +46,7 @@ cdef class Scene:
     cdef double* arc_length
     cdef int row_of(self, double y) noexcept nogil
     cdef int column_of(self, double x) noexcept nogil
+    cdef bint empty_around(self, int column, int row) noexcept nogil
     cdef bint sees(self, double px, double py, double qx, double qy) noexcept nogil
     cdef bint sees_vertex(self, double qx, double qy, int v) noexcept nogil
     cdef bint joined(self, int u, int v) noexcept nogil

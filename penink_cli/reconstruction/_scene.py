@@ -143,6 +143,19 @@ class Scene:
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)
+    def empty_around(self, column: cython.int, row: cython.int) -> cython.bint:
+        """True if no edge touches a cell or its eight neighbours; −1 is the half cell along the border."""
+        left: cython.int = 0 if column < 0 else column
+        right: cython.int = column + 2 if column + 2 < self.gw else self.gw - 1
+        r: cython.int
+        for r in range(0 if row < 0 else row, (row + 2 if row + 2 < self.gh else self.gh - 1) + 1):
+            if self.cell_start[r * self.gw + right + 1] > self.cell_start[r * self.gw + left]:
+                return False
+        return True
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
     def sees(self, px: cython.double, py: cython.double, qx: cython.double, qy: cython.double) -> cython.bint:
         """Whether two queries see each other."""
         if px == qx and py == qy:

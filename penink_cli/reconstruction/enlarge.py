@@ -17,7 +17,7 @@ import numpy.typing as npt
 
 from penink_cli.errors import ParameterError
 from penink_cli.model import EdgeList, Floats, GreyImage
-from penink_cli.reconstruction import _desk, _pixels, _render, _separable, _tile, _weights, paths
+from penink_cli.reconstruction import _desk, _render, _separable, _shade, _surroundings, _tile, _weights, paths
 from penink_cli.reconstruction import threads as threading
 from penink_cli.reconstruction.kernels import is_bspline, taps
 from penink_cli.reconstruction.lattice import TILE, Axis, axis, centres
@@ -178,6 +178,8 @@ class _Enlargement:
         self.into = into if (x.begin, y.begin, x.count, y.count) == self.window else None
         # The last tile may have fewer than 8 columns, and its arithmetic has not.
         self.where = np.append(x.taps.where, x.taps.where[-1:].repeat(TILE))
+        offset = self.where - np.append(np.repeat(x.cell, np.diff(x.first)), x.cell[-1:].repeat(TILE))
+        self.offset = (offset / float(self.real.type(self.radius))).astype(self.real)
         self.x_taps = self._padded(x.taps.cubic), self._padded(x.taps.bspline)
         self.y_taps = y.taps.cubic.astype(self.real), y.taps.bspline.astype(self.real)
         self.down = self.y_taps[self.only_b]
@@ -207,8 +209,8 @@ class _Enlargement:
             h = len(self.samples)
             finder = self.paths.finder(closed=True, rows=(min(max(source, 0), h - 1), max(1, min(last, h))))
             _render.retouch(
-                _tile.Tile(finder, x.step, y.step, 1 + spill(self.radius)), _desk.Desk(), self.samples,
-                self.where, *self.x_taps, x.cell, x.first,
+                _tile.Tile(finder, x.step, y.step, 1 + spill(self.radius)), _desk.Desk(self.real == np.float32),
+                self.samples, self.where, self.offset, *self.x_taps, x.cell, x.first,
                 y.taps.where[begin:end], self.y_taps[0][begin:end], self.y_taps[1][begin:end],
                 y.cell[a:b], y.first[a : b + 1] - y.first[a],
                 self.radius, self.only_b, self.maxval, out,
@@ -261,4 +263,4 @@ class _Reduction:
         return np.floor(np.clip(out, 0.0, self.maxval) + 0.5).astype(self.stored)
 
 
-COMPILED = paths.COMPILED and all(kernel.COMPILED for kernel in (_desk, _pixels, _render, _separable, _tile, _weights))
+COMPILED = paths.COMPILED and all(kernel.COMPILED for kernel in (_desk, _render, _separable, _shade, _surroundings, _tile, _weights))
