@@ -123,7 +123,7 @@ static inline unsigned long long beyond_in_columns(Four low, Four high) {
 #endif
 }
 
-/* Eight numbers, none negative, rounded half up and stored as bytes. */
+/* Eight numbers below 256, rounded half up and stored as bytes, negative ones as 0. */
 static inline void keep_bytes(Four low, Four high, unsigned char *out) {
 #ifdef __SSE2__
     __m128i a = _mm_cvttps_epi32((__m128)(low + all_four(0.5f)));
@@ -131,7 +131,10 @@ static inline void keep_bytes(Four low, Four high, unsigned char *out) {
     a = _mm_packs_epi32(a, b);
     _mm_storel_epi64((__m128i *)out, _mm_packus_epi16(a, a));
 #else
-    for (int i = 0; i < 8; i++) out[i] = (unsigned char)((i < 4 ? low[i] : high[i - 4]) + 0.5f);
+    for (int i = 0; i < 8; i++) {
+        float v = (i < 4 ? low[i] : high[i - 4]) + 0.5f;
+        out[i] = v > 0 ? (unsigned char)v : 0;
+    }
 #endif
 }
 

@@ -1,3 +1,5 @@
+from libc.string cimport memcpy
+
 cdef extern from "_lanes.h" nogil:
     ctypedef float Four  # four floats, or
     ctypedef double Two  # two doubles: these are arrays, but arithmetic is written as on their numbers
@@ -71,3 +73,11 @@ cdef inline int above(Lanes v, Lanes w) noexcept nogil:  # the set of places whe
 
 cdef inline Lanes* lanes_at(void* place, Lanes* like) noexcept nogil:  # a place as one of the same lanes
     return <Lanes*>place
+
+cdef inline Lanes load(void* place, Lanes* like) noexcept nogil:  # from any place, aligned or not
+    cdef Lanes v
+    memcpy(&v, place, sizeof(Lanes))
+    return v
+
+cdef inline void store(void* place, Lanes v) noexcept nogil:
+    memcpy(place, &v, sizeof(Lanes))

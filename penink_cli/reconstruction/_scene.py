@@ -13,6 +13,7 @@ from cython.cimports.penink_cli.arrangement._predicates import orient
 COMPILED = cython.compiled
 
 PAD = 1e-7
+FEW = cython.declare(cython.int, 3)  # edges in a row of cells that are looked at without finding the cells
 
 
 @cython.cfunc
@@ -190,53 +191,86 @@ class Scene:
     ) -> cython.bint:
         """Whether an edge meets the segment from p to q, which are the vertices u and v, or queries where those are −1.
 
-        Walks the cells that the segment touches, in a crowded cell those of its own finer grid.
+        Walks the cells that the segment touches, in a crowded cell those of its own finer grid. In a row of cells with
+        few edges beside the segment it is cheaper to look at them all than to find its cells there.
         """
         row: cython.int
-        column: cython.int
         k: cython.int
-        fine: cython.int
-        n: cython.int
-        c0: cython.int
-        c1: cython.int
+        e: cython.int = -1
+        first: cython.int
+        last: cython.int
         left: cython.double = 0.0
         right: cython.double = 0.0
         low: cython.double = py if py < qy else qy
         high: cython.double = qy if py < qy else py
-        x0: cython.double
-        y0: cython.double
-        x1: cython.double
-        y1: cython.double
+        c0: cython.int = self.column_of((px if px < qx else qx) - PAD)
+        c1: cython.int = self.column_of((qx if px < qx else px) + PAD)
         for row in range(self.row_of(low - PAD), self.row_of(high + PAD) + 1):
-            span(px, py, qx, qy, row - 1, cython.address(left), cython.address(right))
-            c0 = row * self.gw + self.column_of(left)
-            c1 = row * self.gw + self.column_of(right)
-            if self.n_crowded == 0 or self.cell_start[c1 + 1] - self.cell_start[c0] < CROWD:
-                for k in range(self.cell_start[c0], self.cell_start[c1 + 1]):
+            first = self.cell_start[row * self.gw + c0]
+            last = self.cell_start[row * self.gw + c1 + 1]
+            if last - first > FEW:
+                span(px, py, qx, qy, row - 1, cython.address(left), cython.address(right))
+                first = self.cell_start[row * self.gw + self.column_of(left)]
+                last = self.cell_start[row * self.gw + self.column_of(right) + 1]
+                if self.n_crowded and last - first >= CROWD:
+                    if self.obstructed_in_crowd(
+                        px, py, qx, qy, u, v, row, self.column_of(left), self.column_of(right)
+                    ):
+                        return True
+                    continue
+            for k in range(first, last):
+                if self.cell_edge[k] != e:  # the same in the next cell
+                    e = self.cell_edge[k]
+                    if self.meets(e, px, py, qx, qy, u, v):
+                        return True
+        return False
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def obstructed_in_crowd(
+        self,
+        px: cython.double,
+        py: cython.double,
+        qx: cython.double,
+        qy: cython.double,
+        u: cython.int,
+        v: cython.int,
+        row: cython.int,
+        c0: cython.int,
+        c1: cython.int,
+    ) -> cython.bint:
+        """The same for the cells c0 … c1 of one row, some of them crowded."""
+        column: cython.int
+        k: cython.int
+        cell: cython.int
+        fine: cython.int
+        n: cython.int = FINE
+        x0: cython.double
+        x1: cython.double
+        y0: cython.double = (py - (row - 1)) * n
+        y1: cython.double = (qy - (row - 1)) * n
+        low: cython.double = y0 if y0 < y1 else y1
+        high: cython.double = y1 if y0 < y1 else y0
+        left: cython.double = 0.0
+        right: cython.double = 0.0
+        for column in range(c0, c1 + 1):
+            cell = row * self.gw + column
+            if self.crowded[cell] < 0:
+                for k in range(self.cell_start[cell], self.cell_start[cell + 1]):
                     if self.meets(self.cell_edge[k], px, py, qx, qy, u, v):
                         return True
                 continue
-            for column in range(c0, c1 + 1):
-                if self.crowded[column] < 0:
-                    for k in range(self.cell_start[column], self.cell_start[column + 1]):
-                        if self.meets(self.cell_edge[k], px, py, qx, qy, u, v):
-                            return True
+            x0 = (px - (column - 1)) * n
+            x1 = (qx - (column - 1)) * n
+            for fine in range(within(low - PAD, n), within(high + PAD, n) + 1):
+                span(x0, y0, x1, y1, fine, cython.address(left), cython.address(right))
+                if right < 0.0 or left > n:
                     continue
-                n = FINE
-                x0 = (px - (column - row * self.gw - 1)) * n
-                y0 = (py - (row - 1)) * n
-                x1 = (qx - (column - row * self.gw - 1)) * n
-                y1 = (qy - (row - 1)) * n
-                low = y0 if y0 < y1 else y1
-                high = y1 if y0 < y1 else y0
-                for fine in range(within(low - PAD, n), within(high + PAD, n) + 1):
-                    span(x0, y0, x1, y1, fine, cython.address(left), cython.address(right))
-                    if right < 0.0 or left > n:
-                        continue
-                    c0 = self.crowded[column] + fine * n
-                    for k in range(self.fine_start[c0 + within(left, n)], self.fine_start[c0 + within(right, n) + 1]):
-                        if self.meets(self.fine_edge[k], px, py, qx, qy, u, v):
-                            return True
+                cell = self.crowded[row * self.gw + column] + fine * n
+                for k in range(self.fine_start[cell + within(left, n)], self.fine_start[cell + within(right, n) + 1]):
+                    if self.meets(self.fine_edge[k], px, py, qx, qy, u, v):
+                        return True
         return False
 
     @cython.cfunc

@@ -12,7 +12,7 @@ cdef class Finder:
     cdef int* count
     cdef int* pool_node
     cdef double* pool_length
-    cdef Py_ssize_t pool_used, pool_size
+    cdef Py_ssize_t room, pool_used, pool_size
     cdef double* distance
     cdef int* stamp
     cdef int now

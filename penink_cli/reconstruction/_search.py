@@ -24,20 +24,13 @@ class Finder:
 
     def __init__(self, scene: Scene, row0: cython.int, row1: cython.int, reach: cython.double, closed: cython.bint):
         self.scene = scene
-        self.row0 = row0
-        self.row1 = row1
         self.reach = reach
         self.closed = closed
         self.radius = reach - 2.0 * sqrt(2.0)
-        n: cython.Py_ssize_t = cython.cast(cython.Py_ssize_t, row1 - row0) * scene.width
         k: cython.Py_ssize_t
-        self.start = cython.cast(cython.p_int, malloc(max(1, n) * cython.sizeof(cython.int)))
-        self.count = cython.cast(cython.p_int, malloc(max(1, n) * cython.sizeof(cython.int)))
         self.distance = cython.cast(cython.p_double, malloc(max(1, scene.n_nodes) * cython.sizeof(cython.double)))
         self.stamp = cython.cast(cython.p_int, malloc(max(1, scene.n_nodes) * cython.sizeof(cython.int)))
         self.done = cython.cast(cython.p_int, malloc(max(1, scene.n_nodes) * cython.sizeof(cython.int)))
-        for k in range(n):
-            self.count[k] = -1
         for k in range(scene.n_nodes):
             self.stamp[k] = -1
         self.pool_size = 1024
@@ -48,6 +41,21 @@ class Finder:
         self.heap_key = cython.cast(cython.p_double, malloc(self.heap_size * cython.sizeof(cython.double)))
         self.alpha_size = 64
         self.alpha = cython.cast(cython.p_double, malloc(self.alpha_size * cython.sizeof(cython.double)))
+        self.move(row0, row1)
+
+    def move(self, row0: cython.int, row1: cython.int):
+        """Remember bends for these rows of samples, and forget those of others."""
+        k: cython.Py_ssize_t
+        n: cython.Py_ssize_t = cython.cast(cython.Py_ssize_t, row1 - row0) * self.scene.width
+        self.row0 = row0
+        self.row1 = row1
+        if n > self.room:
+            self.room = n
+            self.start = cython.cast(cython.p_int, realloc(self.start, n * cython.sizeof(cython.int)))
+            self.count = cython.cast(cython.p_int, realloc(self.count, n * cython.sizeof(cython.int)))
+        for k in range(n):
+            self.count[k] = -1
+        self.pool_used = 0
 
     def __dealloc__(self):
         free(self.start)

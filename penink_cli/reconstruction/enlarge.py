@@ -17,7 +17,7 @@ import numpy.typing as npt
 
 from penink_cli.errors import ParameterError
 from penink_cli.model import EdgeList, Floats, GreyImage
-from penink_cli.reconstruction import _desk, _render, _separable, _shade, _surroundings, _tile, _weights, paths
+from penink_cli.reconstruction import _desk, _render, _search, _separable, _shade, _tile, _weights, paths
 from penink_cli.reconstruction import threads as threading
 from penink_cli.reconstruction.kernels import is_bspline, taps
 from penink_cli.reconstruction.lattice import TILE, Axis, axis, centres
@@ -91,7 +91,7 @@ def bands(
     maxval = image.maxval if maxval is None else maxval
     single = maxval < 256
     stored = np.dtype(np.uint8 if single else np.uint16)
-    samples = image.values * np.float64(maxval) / image.maxval
+    samples = image.values if maxval == image.maxval else image.values * np.float64(maxval) / image.maxval
     window = check_window(window, width, height)
     if not soften:
         work = _plan(samples, edges, width, height, radius, kernel, window, single, stored, maxval)
@@ -133,7 +133,7 @@ def check_window(window: Window | None, width: int, height: int) -> Window:
 
 
 def _plan(
-    samples: Floats,
+    samples: Rows,
     edges: EdgeList | None,
     width: int,
     height: int,
@@ -149,11 +149,11 @@ def _plan(
     widening = max(1.0, w / width, h / height)
     paths = Paths(edges, w, h, reach(radius, widening))
     if widening > 1.0:
-        return _Reduction(samples, paths, width, height, radius * widening, only_b, window, stored, maxval)
+        return _Reduction(samples.astype(np.float64, order="C"), paths, width, height, radius * widening, only_b, window, stored, maxval)
     left, top, across, down = window
     real = np.dtype(np.float32 if single else np.float64)
     x, y = axis(width, w, left, left + across), axis(height, h, top, top + down)
-    return _Enlargement(samples.astype(real), paths, x, y, radius, only_b, window, real, stored, maxval)
+    return _Enlargement(samples.astype(real, order="C"), paths, x, y, radius, only_b, window, real, stored, maxval)
 
 
 @dataclass(eq=False)
@@ -176,13 +176,13 @@ class _Enlargement:
         x, y = self.x, self.y
         # Whole tiles may be more than the window: then bands are cut out of arrays of their own.
         self.into = into if (x.begin, y.begin, x.count, y.count) == self.window else None
-        # The last tile may have fewer than 8 columns, and its arithmetic has not.
-        self.where = np.append(x.taps.where, x.taps.where[-1:].repeat(TILE))
-        offset = self.where - np.append(np.repeat(x.cell, np.diff(x.first)), x.cell[-1:].repeat(TILE))
-        self.offset = (offset / float(self.real.type(self.radius))).astype(self.real)
         self.x_taps = self._padded(x.taps.cubic), self._padded(x.taps.bspline)
         self.y_taps = y.taps.cubic.astype(self.real), y.taps.bspline.astype(self.real)
-        self.down = self.y_taps[self.only_b]
+        if not self.paths.empty:
+            self.where = np.concatenate([x.taps.where, x.taps.where[-1:].repeat(TILE)])
+            cell = np.concatenate([x.cell.repeat(np.diff(x.first)), x.cell[-1:].repeat(TILE)])
+            self.offset = ((self.where - cell) / float(self.real.type(self.radius))).astype(self.real)
+            self.hands: list[tuple[_search.Finder, _tile.Tile, _desk.Desk]] = []
         rows = max(1, min(BAND // x.count, -(-y.count // (4 * threads))))
         # Bands of whole tiles, as even as can be.
         pieces = min(len(y.cell), -(-y.count // rows))
@@ -191,6 +191,7 @@ class _Enlargement:
         return threading.in_order(tasks, threads)
 
     def _padded(self, table: Floats) -> Rows:
+        """A table of taps by columns; the arithmetic of the last tile has eight of them, whatever it has itself."""
         rows = np.zeros((4, len(table) + TILE), self.real)
         rows[:, : len(table)] = table.T
         return rows
@@ -201,26 +202,37 @@ class _Enlargement:
         begin, end = int(y.first[a]), int(y.first[b])
         first = y.taps.first[begin:end]
         source, last = int(first[0]), int(first[-1]) + 4
-        expanded = np.empty((last - source, x.count), self.real)
+        expanded = np.empty((last - source, x.count + TILE), self.real)
         _separable.expand(self.samples, source, x.taps.first, self.x_taps[self.only_b], expanded)
         out = np.empty((end - begin, x.count), self.stored) if self.into is None else self.into[begin:end]
-        _separable.combine(expanded, source, first, self.down[begin:end], self.maxval, out)
+        _separable.combine(expanded, source, first, self.y_taps[self.only_b][begin:end], self.maxval, out)
         if not self.paths.empty:
             h = len(self.samples)
-            finder = self.paths.finder(closed=True, rows=(min(max(source, 0), h - 1), max(1, min(last, h))))
+            try:
+                hand = self.hands.pop()  # atomic, as giving it back is
+            except IndexError:
+                hand = self._hand()
+            finder, tile, desk = hand
+            finder.move(min(max(source, 0), h - 1), max(1, min(last, h)))
             _render.retouch(
-                _tile.Tile(finder, x.step, y.step, 1 + spill(self.radius)), _desk.Desk(self.real == np.float32),
-                self.samples, self.where, self.offset, *self.x_taps, x.cell, x.first,
+                tile, desk, self.samples, self.where, self.offset, *self.x_taps, x.cell, x.first,
                 y.taps.where[begin:end], self.y_taps[0][begin:end], self.y_taps[1][begin:end],
                 y.cell[a:b], y.first[a : b + 1] - y.first[a],
                 self.radius, self.only_b, self.maxval, out,
             )  # fmt: skip
+            self.hands.append(hand)
         if self.into is not None:
             return out
         left, top, width, height = self.window
         return out[
             max(0, top - y.begin - begin) : top + height - y.begin - begin, left - x.begin : left - x.begin + width
         ]
+
+    def _hand(self) -> tuple[_search.Finder, _tile.Tile, _desk.Desk]:
+        """What one thread at a time works with: a search, and room for a tile and for its numbers."""
+        finder = self.paths.finder(closed=True, rows=(0, 0))
+        tile = _tile.Tile(finder, self.x.step, self.y.step, 1 + spill(self.radius))
+        return finder, tile, _desk.Desk(self.real == np.float32)
 
 
 @dataclass(eq=False)
@@ -263,4 +275,5 @@ class _Reduction:
         return np.floor(np.clip(out, 0.0, self.maxval) + 0.5).astype(self.stored)
 
 
-COMPILED = paths.COMPILED and all(kernel.COMPILED for kernel in (_desk, _render, _separable, _shade, _surroundings, _tile, _weights))
+KERNELS = (_desk, _render, _search, _separable, _shade, _tile, _weights)
+COMPILED = paths.COMPILED and all(kernel.COMPILED for kernel in KERNELS)

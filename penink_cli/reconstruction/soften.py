@@ -16,6 +16,7 @@ from penink_cli.reconstruction.kernels import Taps, taps
 from penink_cli.reconstruction.lattice import centres
 
 Window = tuple[int, int, int, int]
+EIGHT = 8  # columns of room beyond the last: see `_separable.expand`
 
 
 def _axis(count: int, half: int, begin: int, size: int) -> Taps:
@@ -48,7 +49,8 @@ def soften(
     """Rows of the window of the whole picture, from those of `inner`, which `source_window` chose."""
     x = _axis(width, half_width, window[0], window[2])
     y = _axis(height, half_height, window[1], window[3])
-    across = np.ascontiguousarray(x.cubic.T)
+    across = np.zeros((4, len(x.first) + EIGHT))
+    across[:, : len(x.first)] = x.cubic.T
     x_first = x.first - np.intc(inner[0])
     y_first = y.first - np.intc(inner[1])
     kept = np.empty((0, inner[2]))
@@ -62,7 +64,7 @@ def soften(
         if ready <= done:
             continue
         begin, end = int(y_first[done]), int(y_first[ready - 1]) + y.cubic.shape[1]
-        expanded = np.empty((end - begin, len(x.first)))
+        expanded = np.empty((end - begin, len(x.first) + EIGHT))
         _separable.expand(kept, begin - start, x_first, across, expanded)
         out = np.empty((ready - done, len(x.first)), stored)
         _separable.combine(expanded, begin, y_first[done:ready], y.cubic[done:ready], maxval, out)
