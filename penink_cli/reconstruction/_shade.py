@@ -53,33 +53,38 @@ def measure(
 @cython.inline
 @cython.nogil
 @cython.exceptval(check=False)
-def note(desk: Desk, r: cython.Py_ssize_t, s: cython.int, alpha: cython.p_void) -> cython.void:
-    """Note the attenuation of a sample, its number the highest yet, in row r of the pixels."""
-    k: cython.int = desk.notes[r]
-    desk.notes[r] = k + 1
-    desk.note[16 * r + k] = s
-    desk.note_alpha[16 * r + k] = alpha
+def rows_of(pixels: cython.ulonglong) -> cython.int:
+    """The rows that a set of pixels touches: the bytes of the word that are not zero, gathered by a multiplication."""
+    low: cython.ulonglong = 0x7F7F7F7F7F7F7F7F
+    first: cython.ulonglong = 0x0101010101010101
+    gather: cython.ulonglong = 0x0102040810204080
+    pixels = (((pixels & low) + low) | pixels) >> 7 & first
+    return cython.cast(cython.int, (pixels * gather) >> 56)
 
 
 @cython.cfunc
 @cython.nogil
 @cython.exceptval(check=False)
 def cover(
-    bits: cython.pointer[Lanes], desk: Desk, s: cython.int, hidden: cython.ulonglong, nx: cython.int
+    bits: cython.pointer[Lanes], desk: Desk, s: cython.int, hidden: cython.ulonglong, nx: cython.int, ny: cython.int
 ) -> cython.void:
-    """Note a sample to which no path bends: it counts where it is seen, and only there."""
-    r: cython.Py_ssize_t = 0
+    """Note a sample to which no path bends: it counts where it is seen, and only there.
+
+    Without a branch: which rows a shadow touches is anyone's guess, and a wrong one costs as much as a row.
+    """
+    r: cython.Py_ssize_t
+    k: cython.int
     byte: cython.int
     row: cython.Py_ssize_t = 2 if Lanes is Four else 4
     whole: cython.int = 255 >> (8 - nx)
-    while hidden:
+    for r in range(ny):
         byte = hidden & 255
         hidden >>= 8
-        if byte:
-            desk.shaded[r] |= 1 << s
-            if byte != whole:
-                note(desk, r, s, bits + row * (byte ^ 255))
-        r += 1
+        desk.shaded[r] |= (byte != 0) << s
+        k = desk.notes[r]
+        desk.note[16 * r + k] = s
+        desk.note_alpha[16 * r + k] = bits + row * (byte ^ 255)
+        desk.notes[r] = k + ((byte != 0) & (byte != whole))
 
 
 @cython.cfunc
@@ -99,10 +104,12 @@ def fade(
     With u = 1 − detour / r clamped to 0 … 1 the attenuation 1 − S(1 − u) is S(u), and as no path is shorter than the
     straight line only 0 needs a test.
     """
-    r: cython.Py_ssize_t = 0
+    r: cython.Py_ssize_t
+    k: cython.int
     m: cython.int
     h: cython.Py_ssize_t
     byte: cython.int
+    rows: cython.int = rows_of(hidden)
     row: cython.Py_ssize_t = 2 if Lanes is Four else 4
     sx: Lanes
     sy: Lanes
@@ -131,28 +138,30 @@ def fade(
         across[h] = (ux[h] - sx) * (ux[h] - sx)
     if bends == 1:
         length[0] = length[0] - one
-    while hidden:
-        byte = hidden & 255
-        hidden >>= 8
-        if byte:
-            veil = bits + row * byte
-            bare = bits + row * (byte ^ 255)
-            for h in range(row):
-                best[h] = first[row * r + h] + length[0]
-            if bends > 1:
-                for m in range(1, bends):
-                    near = nodes + row * (8 * desk.bend[m] + r)
-                    for h in range(row):
-                        best[h] = less(near[h] + length[m], best[h])
+    while rows:
+        r = lowest(rows)
+        rows &= rows - 1
+        byte = (hidden >> (8 * r)) & 255
+        veil = bits + row * byte
+        bare = bits + row * (byte ^ 255)
+        for h in range(row):
+            best[h] = first[row * r + h] + length[0]
+        if bends > 1:
+            for m in range(1, bends):
+                near = nodes + row * (8 * desk.bend[m] + r)
                 for h in range(row):
-                    best[h] = best[h] - one
-            down = (uy[r] - sy) * (uy[r] - sy)
+                    best[h] = less(near[h] + length[m], best[h])
             for h in range(row):
-                u = more(root(across[h] + down) - best[h], zero)
-                alpha[row * r + h] = u * u * (three - (u + u)) * veil[h] + bare[h]
-            desk.shaded[r] |= 1 << s
-            note(desk, r, s, alpha + row * r)
-        r += 1
+                best[h] = best[h] - one
+        down = (uy[r] - sy) * (uy[r] - sy)
+        for h in range(row):
+            u = more(root(across[h] + down) - best[h], zero)
+            alpha[row * r + h] = u * u * (three - (u + u)) * veil[h] + bare[h]
+        desk.shaded[r] |= 1 << s
+        k = desk.notes[r]
+        desk.note[16 * r + k] = s
+        desk.note_alpha[16 * r + k] = alpha + row * r
+        desk.notes[r] = k + 1
 
 
 @cython.cfunc
@@ -235,6 +244,6 @@ def attenuate(bits: cython.pointer[Lanes], desk: Desk, tile: Tile, radius: cytho
         lanes_at(desk.spread, bits)[s] = lane(lanes_at(desk.values, bits), s)
         bends = find_bends(bits, desk, tile, s, radius)
         if bends == 0:
-            cover(bits, desk, s, tile.hidden[s], tile.nx)
+            cover(bits, desk, s, tile.hidden[s], tile.nx, tile.ny)
         else:
             fade(bits, desk, s, tile.hidden[s], bends, tile.sx[s & 3] / radius, tile.sy[s >> 2] / radius)

@@ -15,4 +15,4 @@ cdef class Tile(Surroundings):
     cdef bint see(self) noexcept nogil
     cdef unsigned long long node_mask(self, int node) noexcept nogil
     cdef unsigned long long edge_mask(self, int k) noexcept nogil
-    cdef unsigned long long draw_line(self, int k, int sample) noexcept nogil
+    cdef void draw_lines(self, int k, int samples) noexcept nogil

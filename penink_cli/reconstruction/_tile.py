@@ -50,6 +50,7 @@ class Tile(Surroundings):
         some: cython.int = 0
         left: cython.int
         mask: cython.ulonglong
+        side: cython.ulonglong
         everything: cython.ulonglong
         self.gather(1)
         self.gathered_wide = False
@@ -91,13 +92,13 @@ class Tile(Surroundings):
                     left &= self.sample_side[k]
                 a = self.edge_a[k]
                 b = self.edge_b[k]
+                self.draw_lines(a, left)
+                self.draw_lines(b, left)
                 while left:
                     s = lowest(left)
                     left &= left - 1
-                    self.hidden[s] |= (
-                        (mask ^ everything if (self.sample_side[k] >> s) & 1 else mask)
-                        & (beside_line(self, a, s) ^ beside_line(self, b, s))
-                    )  # fmt: skip
+                    side = -cython.cast(cython.ulonglong, (self.sample_side[k] >> s) & 1)
+                    self.hidden[s] |= ((mask ^ side) & everything) & (beside_line(self, a, s) ^ beside_line(self, b, s))
             left = some & ~full
             while left:
                 s = lowest(left)
@@ -189,25 +190,26 @@ class Tile(Surroundings):
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)
-    def draw_line(self, k: cython.int, sample: cython.int) -> cython.ulonglong:
-        """The pixels on the positive side of the line from a sample to a vertex; they are noted."""
+    def draw_lines(self, k: cython.int, samples: cython.int) -> cython.void:
+        """Note the pixels on the positive side of the lines from some samples to a vertex, if those cut the tile."""
+        s: cython.int
         v: cython.int = self.vertex[k]
-        self.has_line[k] |= 1 << sample
-        self.line[16 * k + sample] = self.half_plane(
-            self.column[sample & 3], self.row[sample >> 2], self.scene.vx[v], self.scene.vy[v], True
-        )
-        return self.line[16 * k + sample]
+        samples &= ~(self.positive[k] | self.negative[k] | self.has_line[k])
+        self.has_line[k] |= samples
+        while samples:
+            s = lowest(samples)
+            samples &= samples - 1
+            self.line[16 * k + s] = self.half_plane(
+                self.column[s & 3], self.row[s >> 2], self.scene.vx[v], self.scene.vy[v], True
+            )
 
 
 @cython.cfunc
 @cython.inline
 @cython.nogil
 @cython.exceptval(check=False)
-def beside_line(tile: Tile, k: cython.int, sample: cython.int) -> cython.ulonglong:
-    """The pixels on the positive side of the line from a sample to a vertex, if they are not known to be all or none."""
-    bit: cython.int = 1 << sample
-    if tile.positive[k] & bit:
-        return ALL
-    if tile.negative[k] & bit:
-        return 0
-    return tile.line[16 * k + sample] if tile.has_line[k] & bit else tile.draw_line(k, sample)
+def beside_line(tile: Tile, k: cython.int, s: cython.int) -> cython.ulonglong:
+    """The pixels on the positive side of the line from a sample to a vertex, without a branch: none can be foreseen."""
+    positive: cython.ulonglong = (tile.positive[k] >> s) & 1
+    drawn: cython.ulonglong = (tile.has_line[k] >> s) & 1
+    return -positive | (tile.line[16 * k + s] & -drawn)
