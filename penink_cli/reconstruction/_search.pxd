@@ -1,12 +1,14 @@
 cimport cython
 
 from penink_cli.reconstruction._scene cimport Scene
+from penink_cli.reconstruction._views cimport Views
 
 @cython.final
 cdef class Finder:
     cdef readonly Scene scene
     cdef int row0, row1
-    cdef bint closed
+    cdef bint closed, looks
+    cdef Views views
     cdef double reach, radius, from_x, from_y
     cdef int* start
     cdef int* count
@@ -24,7 +26,6 @@ cdef class Finder:
     cdef double* alpha
     cdef int alpha_size
     cdef void push(self, int node, double key) noexcept nogil
-    cdef bint worth(self, double x, double y, double length) noexcept nogil
     cdef void first_bends(self, double qx, double qy, double reach) noexcept nogil
     cdef void spread(self, double reach) noexcept nogil
     cdef int bends_of(self, int i, int j) noexcept nogil

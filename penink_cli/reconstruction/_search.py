@@ -5,11 +5,12 @@ import cython
 from cython.cimports.libc.math import fabs, sqrt
 from cython.cimports.libc.stdlib import free, malloc, realloc
 from cython.cimports.penink_cli.reconstruction._scene import BLOCK, Scene
+from cython.cimports.penink_cli.reconstruction._views import Views, worth
 
 COMPILED = cython.compiled
 
 INFINITY = cython.declare(cython.double, float("inf"))
-SLACK = cython.declare(cython.double, 1e-9)  # more than rounding comes to in lengths of a few samples
+WIDEST = cython.declare(cython.double, 15.0)  # the widest window of `Views`
 MANY = cython.declare(cython.int, 64)  # samples in a block from which on bends are not remembered for each of them
 
 
@@ -27,6 +28,9 @@ class Finder:
         self.reach = reach
         self.closed = closed
         self.radius = reach - 2.0 * sqrt(2.0)
+        self.views = Views(scene, reach, self.radius)
+        # In a crowd there are more edges near a node than on the way to it.
+        self.looks = closed and scene.n_crowded == 0 and self.views.window <= WIDEST
         k: cython.Py_ssize_t
         self.distance = cython.cast(cython.p_double, malloc(max(1, scene.n_nodes) * cython.sizeof(cython.double)))
         self.stamp = cython.cast(cython.p_int, malloc(max(1, scene.n_nodes) * cython.sizeof(cython.int)))
@@ -56,6 +60,9 @@ class Finder:
         for k in range(n):
             self.count[k] = -1
         self.pool_used = 0
+        if self.looks:
+            with cython.nogil:
+                self.views.look(row0, row1)
 
     def __dealloc__(self):
         free(self.start)
@@ -103,32 +110,6 @@ class Finder:
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)
-    def worth(self, x: cython.double, y: cython.double, length: cython.double) -> cython.bint:
-        """Whether a path of that length from a sample to a bend, x and y away, can go on to a pixel of the sample's.
-
-        A pixel p has a sample s among its 16 where it lies in the square of half side 2 around s, and the path matters
-        where length + |p − v| < |p − s| + r. So length − r must be less than the most that |p − s| − |p − v| comes to
-        in that square: within it at v itself; else, where v is beyond one side, at the point of that side that the
-        mirror image of v is seen through, where the mirror image is; and at the corner where that is off the side.
-        A node left out is no stage to another: |p − s| − |p − v| falls by no more than the way from node to node.
-        It leaves out a third of all bends that the bound by distance alone lets in.
-        """
-        most: cython.double
-        x = fabs(x)
-        y = fabs(y)
-        if x <= 2.0 and y <= 2.0:
-            most = sqrt(x * x + y * y)
-        elif y <= 4.0 - x and x > 2.0:
-            most = sqrt((4.0 - x) * (4.0 - x) + y * y)
-        elif x <= 4.0 - y and y > 2.0:
-            most = sqrt((4.0 - y) * (4.0 - y) + x * x)
-        else:
-            most = 2.0 * sqrt(2.0) - sqrt((x - 2.0) * (x - 2.0) + (y - 2.0) * (y - 2.0))
-        return length < most + self.radius + SLACK
-
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
     def first_bends(self, qx: cython.double, qy: cython.double, reach: cython.double) -> cython.void:
         """Start a search: note the nodes that the query q sees, within reach."""
         row: cython.int
@@ -137,8 +118,7 @@ class Finder:
         x: cython.double
         y: cython.double
         d: cython.double
-        # A node worth its while is at most so far away along an axis: |v| + |v − corner| ≥ |corner mirrored at v's x|.
-        window: cython.double = 1.0 + 0.5 * sqrt(reach * reach - 4.0) if self.closed else reach
+        window: cython.double = self.views.window if self.closed else reach
         across: cython.int = self.scene.node_across
         c0: cython.int = self.scene.column_of(qx - window) >> BLOCK
         c1: cython.int = (self.scene.column_of(qx + window) >> BLOCK) + 1
@@ -153,7 +133,7 @@ class Finder:
                 if fabs(x) > window or fabs(y) > window:
                     continue
                 d = sqrt(x * x + y * y)
-                if d >= reach or (self.closed and not self.worth(x, y, d)):
+                if d >= reach or (self.closed and not worth(x, y, d, self.radius)):
                     continue
                 n = self.scene.node_sorted[k]
                 if self.scene.bends_for(n, qx, qy) and self.scene.sees_vertex(qx, qy, self.scene.node_vertex[n]):
@@ -202,7 +182,9 @@ class Finder:
                     continue
                 n = self.scene.arc_to[k]
                 i = self.scene.node_vertex[n]
-                if not self.closed or self.worth(self.scene.vx[i] - self.from_x, self.scene.vy[i] - self.from_y, last):
+                if not self.closed or worth(
+                    self.scene.vx[i] - self.from_x, self.scene.vy[i] - self.from_y, last, self.radius
+                ):
                     self.push(n, last)
 
     @cython.cfunc
@@ -214,7 +196,17 @@ class Finder:
         s: cython.Py_ssize_t = cython.cast(cython.Py_ssize_t, i - self.row0) * self.scene.width + j
         if self.count[s] >= 0:
             return self.start[s]
-        self.first_bends(j, i, self.reach)
+        if self.looks:
+            self.now += 1
+            self.heap_used = 0
+            self.from_x = j
+            self.from_y = i
+            k = self.views.head[s]
+            while k >= 0:
+                self.push(self.views.node[k], self.views.length[k])
+                k = self.views.following[k]
+        else:
+            self.first_bends(j, i, self.reach)
         if self.closed:
             self.spread(self.reach)
         else:  # the heap itself is the answer

@@ -8,10 +8,10 @@ import numpy as np
 import numpy.typing as npt
 
 from penink_cli.model import EdgeList, Floats
-from penink_cli.reconstruction import _cells, _nodes, _scene, _search
+from penink_cli.reconstruction import _cells, _nodes, _scene, _search, _views
 from penink_cli.reconstruction import threads as threading
 
-COMPILED = _cells.COMPILED and _nodes.COMPILED and _scene.COMPILED and _search.COMPILED
+COMPILED = _cells.COMPILED and _nodes.COMPILED and _scene.COMPILED and _search.COMPILED and _views.COMPILED
 
 BLOCK = 2.0 * math.sqrt(2.0)  # how far a point can be from a sample under its 4 × 4 kernel
 
