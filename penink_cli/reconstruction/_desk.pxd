@@ -9,6 +9,8 @@ cdef class Desk:
     cdef void* ky
     cdef void* values
     cdef void* spread
+    cdef void* distance
+    cdef int known
     cdef void* alpha
     cdef void* nodes
     cdef unsigned long long* node_mask
@@ -16,7 +18,5 @@ cdef class Desk:
     cdef void* bend_length
     cdef int used, size
     cdef int[8] shaded
-    cdef int[8] notes
-    cdef unsigned char[128] note
-    cdef void* note_alpha[128]
+    cdef int[8] faded
     cdef int another_node(self, unsigned long long seen) noexcept nogil

@@ -3,6 +3,7 @@
 
 import cython
 from cython.cimports.libc.stdlib import free, malloc, realloc
+from cython.cimports.libc.string import memset
 
 COMPILED = cython.compiled
 
@@ -19,13 +20,14 @@ class Desk:
     ux: (8,) the columns of pixels, relative to the cell and in units of the radius. uy: (8,) the rows, spread.
     kx: (2, 4, 8) weights of each column of samples at the columns of pixels, cubic and B-spline.
     ky: (2, 8, 4) those of each row of samples at the rows of pixels, spread.
-    values: (16,) the samples. spread: (16,) those of them that are noted, spread.
+    values: (16,) the samples. spread: (16,) those of them that are not seen by all, spread.
+    distance: (16, 8, 8) of each pixel from the samples −1 … 2 down and across the cell, in units of the radius.
+    known: the set of those that are filled in; they stay while the pixels stand alike in their cells.
     alpha: (16, 8, 8) attenuation of a sample at each pixel.
     nodes: (size, 8, 8) distance of each pixel from a node, FAR where it is hidden; node_mask: where it is seen.
     bend, bend_length: (size,) the nodes next to one sample, and how far it is to them, spread.
     shaded: for each row of pixels the set of samples that some of them do not see.
-    notes: how many of those have an attenuation other than zero somewhere in the row. note, note_alpha: (8, 16) which,
-    in reading order, and where that attenuation is. A number that is *spread* is in all lanes.
+    faded: those of them whose attenuation is not zero throughout the row. A number that is *spread* is in all lanes.
     """
 
     def __init__(self, single: cython.bint):
@@ -35,10 +37,13 @@ class Desk:
         self.bits = malloc(256 * 8 * NUMBER)
         self.ux = malloc(8 * NUMBER)
         self.uy = malloc(8 * SPREAD)
+        memset(self.ux, 0, 8 * NUMBER)
+        memset(self.uy, 0, 8 * SPREAD)
         self.kx = malloc(2 * 4 * 8 * NUMBER)
         self.ky = malloc(2 * 8 * 4 * SPREAD)
         self.values = malloc(16 * NUMBER)
         self.spread = malloc(16 * SPREAD)
+        self.distance = malloc(16 * 64 * NUMBER)
         self.alpha = malloc(16 * 64 * NUMBER)
         self.nodes = malloc(self.size * 64 * NUMBER)
         self.node_mask = cython.cast(cython.p_ulonglong, malloc(self.size * cython.sizeof(cython.ulonglong)))
@@ -59,6 +64,7 @@ class Desk:
         free(self.ky)
         free(self.values)
         free(self.spread)
+        free(self.distance)
         free(self.alpha)
         free(self.nodes)
         free(self.node_mask)

@@ -6,7 +6,7 @@ few vectors, ROW of them: two of floats, four of doubles. Wider vectors are not 
 """
 
 import cython
-from cython.cimports.libc.string import memcpy
+from cython.cimports.libc.string import memcmp, memcpy
 from cython.cimports.penink_cli.reconstruction._desk import Desk
 from cython.cimports.penink_cli.reconstruction._lanes import (
     Four,
@@ -19,6 +19,7 @@ from cython.cimports.penink_cli.reconstruction._lanes import (
     lane,
     lanes_at,
     less,
+    lowest,
     more,
 )
 from cython.cimports.penink_cli.reconstruction._shade import attenuate
@@ -42,17 +43,16 @@ def add_up(
     kernel: cython.int,
     r: cython.int,
     shaded: cython.int,
-    notes: cython.int,
+    faded: cython.int,
     top: cython.pointer[Lanes],
     bottom: cython.pointer[Lanes],
 ) -> cython.void:
     """Numerator and denominator of equation 5 for row r of the pixels, kernel 0 the cubic, 1 the B-spline.
 
-    Samples that all of them see are summed as separable, of the others those that count somewhere are noted.
+    Samples that all of them see are summed as separable; `faded` are those of the others that count somewhere.
     """
     i: cython.int
     j: cython.int
-    m: cython.int
     s: cython.int
     h: cython.Py_ssize_t
     row: cython.Py_ssize_t = 2 if Lanes is Four else 4
@@ -69,6 +69,7 @@ def add_up(
     column: cython.pointer[Lanes]
     kx: cython.pointer[Lanes] = lanes_at(desk.kx, bits) + 4 * row * kernel
     ky: cython.pointer[Lanes] = lanes_at(desk.ky, bits) + 4 * (8 * kernel + r)
+    attenuation: cython.pointer[Lanes] = lanes_at(desk.alpha, bits) + row * r
     values: cython.pointer[Lanes] = lanes_at(desk.values, bits)
     spread: cython.pointer[Lanes] = lanes_at(desk.spread, bits)
     for h in range(half):
@@ -93,9 +94,10 @@ def add_up(
         for h in range(row):
             t[h] = t[h] + f * kx[row * i + h]
             b[h] = b[h] + y * kx[row * i + h]
-    for m in range(16 * r, 16 * r + notes):
-        s = desk.note[m]
-        alpha = lanes_at(desk.note_alpha[m], bits)
+    while faded:
+        s = lowest(faded)
+        faded &= faded - 1
+        alpha = attenuation + 8 * row * s
         y = ky[s >> 2]
         f = spread[s]
         column = kx + row * (s & 3)
@@ -139,7 +141,7 @@ def smooth(t: Lanes, one: Lanes) -> Lanes:
 def blend(
     bits: cython.pointer[Lanes], desk: Desk, r: cython.int, only_b: cython.bint, out: cython.pointer[Lanes]
 ) -> cython.void:
-    """The values of row r of a tile that `attenuate` has made its notes of."""
+    """The values of row r of a tile that is attenuated."""
     h: cython.Py_ssize_t
     row: cython.Py_ssize_t = 2 if Lanes is Four else 4
     top: Lanes[4]
@@ -154,12 +156,12 @@ def blend(
     fill(cython.address(half), T1)
     fill(cython.address(threshold), T2)
     if not only_b:
-        add_up(bits, desk, 0, r, desk.shaded[r], desk.notes[r], top, bottom)
+        add_up(bits, desk, 0, r, desk.shaded[r], desk.faded[r], top, bottom)
         if not any_below(bottom, half):
             for h in range(row):
                 out[h] = top[h] / bottom[h]
             return
-    add_up(bits, desk, 1, r, desk.shaded[r], desk.notes[r], top_b, bottom_b)
+    add_up(bits, desk, 1, r, desk.shaded[r], desk.faded[r], top_b, bottom_b)
     for h in range(row):
         if only_b:
             out[h] = top_b[h] / bottom_b[h]
@@ -221,11 +223,15 @@ def lay_out_rows(
 ) -> cython.void:
     """Lay ready what belongs to the rows of pixels of a tile; yc, yb: (8, 4) weights. `bits` only tells the lanes."""
     k: cython.int
+    uy: Lanes[8]
     for k in range(4 * tile.ny):
         fill(lanes_at(desk.ky, bits) + k, yc[k])
         fill(lanes_at(desk.ky, bits) + 32 + k, yb[k])
-    for k in range(tile.ny):
-        fill(lanes_at(desk.uy, bits) + k, (tile.py[k] - tile.cy) / radius)
+    for k in range(8):
+        fill(uy + k, (tile.py[k if k < tile.ny else 0] - tile.cy) / radius)
+    if memcmp(desk.uy, uy, 8 * cython.sizeof(uy[0])) != 0:
+        memcpy(desk.uy, uy, 8 * cython.sizeof(uy[0]))
+        desk.known = 0
 
 
 @cython.cfunc
@@ -255,7 +261,9 @@ def lay_out(
     for i in range(4):
         memcpy(kx + 8 * i, xc + stride * i, 8 * cython.sizeof(xc[0]))
         memcpy(kx + 32 + 8 * i, xb + stride * i, 8 * cython.sizeof(xc[0]))
-    memcpy(desk.ux, ux, 8 * cython.sizeof(xc[0]))
+    if memcmp(desk.ux, ux, 8 * cython.sizeof(xc[0])) != 0:
+        memcpy(desk.ux, ux, 8 * cython.sizeof(xc[0]))
+        desk.known = 0
     for j in range(4):
         f = samples + cython.cast(cython.Py_ssize_t, tile.row[j]) * tile.scene.width
         for i in range(4):

@@ -68,23 +68,54 @@ def rows_of(pixels: cython.ulonglong) -> cython.int:
 def cover(
     bits: cython.pointer[Lanes], desk: Desk, s: cython.int, hidden: cython.ulonglong, nx: cython.int, ny: cython.int
 ) -> cython.void:
-    """Note a sample to which no path bends: it counts where it is seen, and only there.
+    """Attenuate a sample to which no path bends: it counts where it is seen, and only there.
 
     Without a branch: which rows a shadow touches is anyone's guess, and a wrong one costs as much as a row.
     """
     r: cython.Py_ssize_t
-    k: cython.int
+    h: cython.Py_ssize_t
     byte: cython.int
     row: cython.Py_ssize_t = 2 if Lanes is Four else 4
     whole: cython.int = 255 >> (8 - nx)
+    bare: cython.pointer[Lanes]
+    alpha: cython.pointer[Lanes] = lanes_at(desk.alpha, bits) + 8 * row * s
     for r in range(ny):
         byte = hidden & 255
         hidden >>= 8
         desk.shaded[r] |= (byte != 0) << s
-        k = desk.notes[r]
-        desk.note[16 * r + k] = s
-        desk.note_alpha[16 * r + k] = bits + row * (byte ^ 255)
-        desk.notes[r] = k + ((byte != 0) & (byte != whole))
+        desk.faded[r] |= ((byte != 0) & (byte != whole)) << s
+        bare = bits + row * (byte ^ 255)
+        for h in range(row):
+            alpha[row * r + h] = bare[h]
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def distances(
+    bits: cython.pointer[Lanes], desk: Desk, down: cython.int, across: cython.int, radius: cython.double
+) -> cython.pointer[Lanes]:
+    """How far each pixel is from the sample −1 … 2 down and across the cell, in units of the radius."""
+    r: cython.Py_ssize_t
+    h: cython.Py_ssize_t
+    place: cython.int = 4 * down + across + 5
+    row: cython.Py_ssize_t = 2 if Lanes is Four else 4
+    ux: cython.pointer[Lanes] = lanes_at(desk.ux, bits)
+    uy: cython.pointer[Lanes] = lanes_at(desk.uy, bits)
+    out: cython.pointer[Lanes] = lanes_at(desk.distance, bits) + 8 * row * place
+    x: Lanes
+    y: Lanes
+    squares: Lanes[4]
+    if not (desk.known >> place) & 1:
+        desk.known |= 1 << place
+        fill(cython.address(x), across / radius)
+        fill(cython.address(y), down / radius)
+        for h in range(row):
+            squares[h] = (ux[h] - x) * (ux[h] - x)
+        for r in range(8):
+            for h in range(row):
+                out[row * r + h] = root(squares[h] + (uy[r] - y) * (uy[r] - y))
+    return out
 
 
 @cython.cfunc
@@ -96,54 +127,36 @@ def fade(
     s: cython.int,
     hidden: cython.ulonglong,
     bends: cython.int,
-    x: cython.double,
-    y: cython.double,
+    straight: cython.pointer[Lanes],
 ) -> cython.void:
-    """Note a sample with its attenuation, in the rows where pixels do not see it; lengths in units of the radius.
+    """Attenuate a sample in the rows where pixels do not see it; lengths in units of the radius.
 
-    With u = 1 − detour / r clamped to 0 … 1 the attenuation 1 − S(1 − u) is S(u), and as no path is shorter than the
-    straight line only 0 needs a test.
+    straight: how far each pixel is from the sample. With u = 1 − detour / r clamped to 0 … 1 the attenuation
+    1 − S(1 − u) is S(u); u is one where nothing is between.
     """
     r: cython.Py_ssize_t
-    k: cython.int
     m: cython.int
     h: cython.Py_ssize_t
-    byte: cython.int
     rows: cython.int = rows_of(hidden)
     row: cython.Py_ssize_t = 2 if Lanes is Four else 4
-    sx: Lanes
-    sy: Lanes
-    zero: Lanes
     one: Lanes
     three: Lanes
-    down: Lanes
     u: Lanes
-    across: Lanes[4]
     best: Lanes[4]
-    veil: cython.pointer[Lanes]
     bare: cython.pointer[Lanes]
     near: cython.pointer[Lanes]
     length: cython.pointer[Lanes] = lanes_at(desk.bend_length, bits)
     nodes: cython.pointer[Lanes] = lanes_at(desk.nodes, bits)
     first: cython.pointer[Lanes] = nodes + 8 * row * desk.bend[0]
     alpha: cython.pointer[Lanes] = lanes_at(desk.alpha, bits) + 8 * row * s
-    ux: cython.pointer[Lanes] = lanes_at(desk.ux, bits)
-    uy: cython.pointer[Lanes] = lanes_at(desk.uy, bits)
-    fill(cython.address(sx), x)
-    fill(cython.address(sy), y)
-    fill(cython.address(zero), 0.0)
     fill(cython.address(one), 1.0)
     fill(cython.address(three), 3.0)
-    for h in range(row):
-        across[h] = (ux[h] - sx) * (ux[h] - sx)
     if bends == 1:
         length[0] = length[0] - one
     while rows:
         r = lowest(rows)
         rows &= rows - 1
-        byte = (hidden >> (8 * r)) & 255
-        veil = bits + row * byte
-        bare = bits + row * (byte ^ 255)
+        bare = bits + row * (((hidden >> (8 * r)) & 255) ^ 255)
         for h in range(row):
             best[h] = first[row * r + h] + length[0]
         if bends > 1:
@@ -153,15 +166,11 @@ def fade(
                     best[h] = less(near[h] + length[m], best[h])
             for h in range(row):
                 best[h] = best[h] - one
-        down = (uy[r] - sy) * (uy[r] - sy)
         for h in range(row):
-            u = more(root(across[h] + down) - best[h], zero)
-            alpha[row * r + h] = u * u * (three - (u + u)) * veil[h] + bare[h]
+            u = less(more(straight[row * r + h] - best[h], bare[h]), one)
+            alpha[row * r + h] = u * u * (three - (u + u))
         desk.shaded[r] |= 1 << s
-        k = desk.notes[r]
-        desk.note[16 * r + k] = s
-        desk.note_alpha[16 * r + k] = alpha + row * r
-        desk.notes[r] = k + 1
+        desk.faded[r] |= 1 << s
 
 
 @cython.cfunc
@@ -229,15 +238,16 @@ def find_bends(bits: cython.pointer[Lanes], desk: Desk, tile: Tile, s: cython.in
 @cython.nogil
 @cython.exceptval(check=False)
 def attenuate(bits: cython.pointer[Lanes], desk: Desk, tile: Tile, radius: cython.double) -> cython.void:
-    """Note for each row of pixels the samples that do not count fully, and their attenuation; bits: the desk's."""
+    """Find the samples that do not count fully in each row of pixels, and their attenuation; bits: the desk's."""
     s: cython.int
     bends: cython.int
     r: cython.int
     left: cython.int = tile.shaded
+    straight: cython.pointer[Lanes]
     desk.used = 0
     for r in range(8):
         desk.shaded[r] = 0
-        desk.notes[r] = 0
+        desk.faded[r] = 0
     while left:
         s = lowest(left)
         left &= left - 1
@@ -246,4 +256,7 @@ def attenuate(bits: cython.pointer[Lanes], desk: Desk, tile: Tile, radius: cytho
         if bends == 0:
             cover(bits, desk, s, tile.hidden[s], tile.nx, tile.ny)
         else:
-            fade(bits, desk, s, tile.hidden[s], bends, tile.sx[s & 3] / radius, tile.sy[s >> 2] / radius)
+            straight = distances(
+                bits, desk, tile.row[s >> 2] - tile.cy, tile.column[s & 3] - tile.cx, radius
+            )  # fmt: skip
+            fade(bits, desk, s, tile.hidden[s], bends, straight)
