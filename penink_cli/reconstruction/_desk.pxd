@@ -7,6 +7,8 @@ cdef class Desk:
     cdef void* uy
     cdef void* kx
     cdef void* ky
+    cdef void* weights
+    cdef int[2] known_weights
     cdef void* values
     cdef void* spread
     cdef void* distance

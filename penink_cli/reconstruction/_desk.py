@@ -20,9 +20,11 @@ class Desk:
     ux: (8,) the columns of pixels, relative to the cell and in units of the radius. uy: (8,) the rows, spread.
     kx: (2, 4, 8) weights of each column of samples at the columns of pixels, cubic and B-spline.
     ky: (2, 8, 4) those of each row of samples at the rows of pixels, spread.
+    weights: (2, 16, 8, 8) the products of those, for each sample at each pixel; known_weights: the sets of samples for
+    which they are filled in. They stay while the pixels stand alike in their cells.
     values: (16,) the samples. spread: (16,) those of them that are not seen by all, spread.
     distance: (16, 8, 8) of each pixel from the samples −1 … 2 down and across the cell, in units of the radius.
-    known: the set of those that are filled in; they stay while the pixels stand alike in their cells.
+    known: the set of those that are filled in; they stay likewise.
     alpha: (16, 8, 8) attenuation of a sample at each pixel.
     nodes: (size, 8, 8) distance of each pixel from a node, FAR where it is hidden; node_mask: where it is seen.
     bend, bend_length: (size,) the nodes next to one sample, and how far it is to them, spread.
@@ -41,7 +43,10 @@ class Desk:
         memset(self.uy, 0, 8 * SPREAD)
         self.kx = malloc(2 * 4 * 8 * NUMBER)
         self.ky = malloc(2 * 8 * 4 * SPREAD)
+        self.weights = malloc(2 * 16 * 64 * NUMBER)
         self.values = malloc(16 * NUMBER)
+        memset(self.kx, 0, 2 * 4 * 8 * NUMBER)
+        memset(self.ky, 0, 2 * 8 * 4 * SPREAD)
         self.spread = malloc(16 * SPREAD)
         self.distance = malloc(16 * 64 * NUMBER)
         self.alpha = malloc(16 * 64 * NUMBER)
@@ -62,6 +67,7 @@ class Desk:
         free(self.uy)
         free(self.kx)
         free(self.ky)
+        free(self.weights)
         free(self.values)
         free(self.spread)
         free(self.distance)

@@ -37,6 +37,32 @@ T2 = cython.declare(cython.double, 1e-4)  # below this sum of B-spline weights p
 @cython.cfunc
 @cython.nogil
 @cython.exceptval(check=False)
+def multiply(bits: cython.pointer[Lanes], desk: Desk, kernel: cython.int, samples: cython.int) -> cython.void:
+    """Fill in the weights of some samples at each pixel, where they are not known."""
+    s: cython.int
+    r: cython.Py_ssize_t
+    h: cython.Py_ssize_t
+    row: cython.Py_ssize_t = 2 if Lanes is Four else 4
+    y: Lanes
+    column: cython.pointer[Lanes]
+    out: cython.pointer[Lanes]
+    ky: cython.pointer[Lanes] = lanes_at(desk.ky, bits) + 32 * kernel
+    samples &= ~desk.known_weights[kernel]
+    desk.known_weights[kernel] |= samples
+    while samples:
+        s = lowest(samples)
+        samples &= samples - 1
+        column = lanes_at(desk.kx, bits) + row * (4 * kernel + (s & 3))
+        out = lanes_at(desk.weights, bits) + 8 * row * (16 * kernel + s)
+        for r in range(8):
+            y = ky[4 * r + (s >> 2)]
+            for h in range(row):
+                out[row * r + h] = y * column[h]
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
 def add_up(
     bits: cython.pointer[Lanes],
     desk: Desk,
@@ -44,12 +70,15 @@ def add_up(
     r: cython.int,
     shaded: cython.int,
     faded: cython.int,
+    weights: cython.pointer[Lanes],
+    alpha: cython.pointer[Lanes],
     top: cython.pointer[Lanes],
     bottom: cython.pointer[Lanes],
 ) -> cython.void:
     """Numerator and denominator of equation 5 for row r of the pixels, kernel 0 the cubic, 1 the B-spline.
 
     Samples that all of them see are summed as separable; `faded` are those of the others that count somewhere.
+    weights, alpha: of this row of pixels for the first sample; those for the others follow 64 numbers apart.
     """
     i: cython.int
     j: cython.int
@@ -65,11 +94,8 @@ def add_up(
     t: Lanes[4]
     b: Lanes[4]
     mask: cython.pointer[Lanes]
-    alpha: cython.pointer[Lanes]
-    column: cython.pointer[Lanes]
     kx: cython.pointer[Lanes] = lanes_at(desk.kx, bits) + 4 * row * kernel
     ky: cython.pointer[Lanes] = lanes_at(desk.ky, bits) + 4 * (8 * kernel + r)
-    attenuation: cython.pointer[Lanes] = lanes_at(desk.alpha, bits) + row * r
     values: cython.pointer[Lanes] = lanes_at(desk.values, bits)
     spread: cython.pointer[Lanes] = lanes_at(desk.spread, bits)
     for h in range(half):
@@ -97,12 +123,9 @@ def add_up(
     while faded:
         s = lowest(faded)
         faded &= faded - 1
-        alpha = attenuation + 8 * row * s
-        y = ky[s >> 2]
         f = spread[s]
-        column = kx + row * (s & 3)
         for h in range(row):
-            w = y * column[h] * alpha[h]
+            w = weights[8 * row * s + h] * alpha[8 * row * s + h]
             b[h] = b[h] + w
             t[h] = t[h] + w * f
     for h in range(row):
@@ -152,16 +175,19 @@ def blend(
     one: Lanes
     half: Lanes
     threshold: Lanes
+    weights: cython.pointer[Lanes] = lanes_at(desk.weights, bits) + row * r
+    alpha: cython.pointer[Lanes] = lanes_at(desk.alpha, bits) + row * r
     fill(cython.address(one), 1.0)
     fill(cython.address(half), T1)
     fill(cython.address(threshold), T2)
     if not only_b:
-        add_up(bits, desk, 0, r, desk.shaded[r], desk.faded[r], top, bottom)
+        add_up(bits, desk, 0, r, desk.shaded[r], desk.faded[r], weights, alpha, top, bottom)
         if not any_below(bottom, half):
             for h in range(row):
                 out[h] = top[h] / bottom[h]
             return
-    add_up(bits, desk, 1, r, desk.shaded[r], desk.faded[r], top_b, bottom_b)
+    multiply(bits, desk, 1, desk.faded[r])
+    add_up(bits, desk, 1, r, desk.shaded[r], desk.faded[r], weights + 128 * row, alpha, top_b, bottom_b)
     for h in range(row):
         if only_b:
             out[h] = top_b[h] / bottom_b[h]
@@ -169,7 +195,7 @@ def blend(
             w = smooth(bottom[h] / half, one)  # ω = S(den / T1)
             out[h] = (w * top[h] + (one - w) * top_b[h]) / (w * bottom[h] + (one - w) * bottom_b[h])
     if any_below(bottom_b, threshold):  # starved: plain convolution, across the edges
-        add_up(bits, desk, 1 if only_b else 0, r, 0, 0, top, bottom)
+        add_up(bits, desk, 1 if only_b else 0, r, 0, 0, weights, alpha, top, bottom)
         for h in range(row):
             w = smooth(bottom_b[h] / threshold, one)
             out[h] = chosen(bottom_b[h], w * out[h] + (one - w) * top[h], top[h])
@@ -224,9 +250,15 @@ def lay_out_rows(
     """Lay ready what belongs to the rows of pixels of a tile; yc, yb: (8, 4) weights. `bits` only tells the lanes."""
     k: cython.int
     uy: Lanes[8]
+    ky: Lanes[64]
+    for k in range(64):
+        fill(ky + k, 0.0)
     for k in range(4 * tile.ny):
-        fill(lanes_at(desk.ky, bits) + k, yc[k])
-        fill(lanes_at(desk.ky, bits) + 32 + k, yb[k])
+        fill(ky + k, yc[k])
+        fill(ky + 32 + k, yb[k])
+    if memcmp(desk.ky, ky, 64 * cython.sizeof(ky[0])) != 0:
+        memcpy(desk.ky, ky, 64 * cython.sizeof(ky[0]))
+        desk.known_weights[0] = desk.known_weights[1] = 0
     for k in range(8):
         fill(uy + k, (tile.py[k if k < tile.ny else 0] - tile.cy) / radius)
     if memcmp(desk.uy, uy, 8 * cython.sizeof(uy[0])) != 0:
@@ -259,8 +291,10 @@ def lay_out(
         kx = cython.cast(cython.p_double, desk.kx)
         values = cython.cast(cython.p_double, desk.values)
     for i in range(4):
-        memcpy(kx + 8 * i, xc + stride * i, 8 * cython.sizeof(xc[0]))
-        memcpy(kx + 32 + 8 * i, xb + stride * i, 8 * cython.sizeof(xc[0]))
+        if memcmp(kx + 8 * i, xc + stride * i, 8 * cython.sizeof(xc[0])) != 0:
+            memcpy(kx + 8 * i, xc + stride * i, 8 * cython.sizeof(xc[0]))
+            memcpy(kx + 32 + 8 * i, xb + stride * i, 8 * cython.sizeof(xc[0]))
+            desk.known_weights[0] = desk.known_weights[1] = 0
     if memcmp(desk.ux, ux, 8 * cython.sizeof(xc[0])) != 0:
         memcpy(desk.ux, ux, 8 * cython.sizeof(xc[0]))
         desk.known = 0
@@ -287,6 +321,7 @@ def paint(
     r: cython.int
     values: Lanes[4]
     attenuate(bits, desk, tile, radius)
+    multiply(bits, desk, 0, tile.shaded)
     for r in range(tile.ny):
         blend(bits, desk, r, only_b, values)
         keep(values, tile.nx, maxval, out + stride * r)

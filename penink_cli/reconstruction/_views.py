@@ -65,7 +65,8 @@ class Views:
 
     head: for each sample its first entry, −1 for none. node, length, following: of each entry the node, how far away
     it is, and the sample's next entry. alive: for each row of samples in a node's window those that see it so far.
-    window: at most 15, how far a node worth its while can be along an axis: |v| + |v − corner| ≥ |corner mirrored at v's x|.
+    window: at most 15, how far away along an axis a node worth its while can be: |v| + |v − corner| ≥ |corner mirrored
+    at v's x|.
     """
 
     def __init__(self, scene: Scene, reach: cython.double, radius: cython.double):
@@ -131,6 +132,7 @@ class Views:
         r1: cython.int = cython.cast(cython.int, floor(y + self.window))
         left: cython.int
         right: cython.int
+        base: cython.int
         seen: cython.uint
         c0 = 0 if c0 < 0 else c0
         c1 = self.scene.width - 1 if c1 >= self.scene.width else c1
@@ -147,9 +149,8 @@ class Views:
         left = self.scene.column_of(x if x < c0 else c0)
         right = self.scene.column_of(x if x > c1 else c1)
         for row in range(self.scene.row_of(y if y < r0 else r0), self.scene.row_of(y if y > r1 else r1) + 1):
-            for k in range(
-                self.scene.cell_start[row * self.scene.gw + left], self.scene.cell_start[row * self.scene.gw + right + 1]
-            ):
+            base = row * self.scene.gw
+            for k in range(self.scene.cell_start[base + left], self.scene.cell_start[base + right + 1]):
                 e = self.scene.cell_edge[k]
                 if self.edge_stamp[e] == self.now:
                     continue

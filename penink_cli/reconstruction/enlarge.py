@@ -149,7 +149,8 @@ def _plan(
     widening = max(1.0, w / width, h / height)
     paths = Paths(edges, w, h, reach(radius, widening))
     if widening > 1.0:
-        return _Reduction(samples.astype(np.float64, order="C"), paths, width, height, radius * widening, only_b, window, stored, maxval)
+        samples = samples.astype(np.float64, order="C")
+        return _Reduction(samples, paths, width, height, radius * widening, only_b, window, stored, maxval)
     left, top, across, down = window
     real = np.dtype(np.float32 if single else np.float64)
     x, y = axis(width, w, left, left + across), axis(height, h, top, top + down)
