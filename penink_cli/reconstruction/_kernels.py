@@ -57,7 +57,9 @@ def fill_taps(
             sum_c = 0.0
             sum_b = 0.0
             for t in range(c.shape[1]):
-                x = (where[k] - (first[k] + t)) / widening
+                x = where[k] - (first[k] + t)
+                if widening > 1.0:
+                    x /= widening
                 c[k, t] = cubic(x)
                 b[k, t] = bspline(x)
                 sum_c += c[k, t]

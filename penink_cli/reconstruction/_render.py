@@ -1,8 +1,8 @@
 # cython: language_level=3, boundscheck=False, wraparound=False, cdivision=True
 """The reconstruction near edges: equation 5 for the pixels of one tile after the other, by rows of eight.
 
-In double, or for 8-bit output in float, which vectorises twice as wide; what pixels see is exact in both. A row is a
-few vectors, ROW of them: two of floats, four of doubles. Wider vectors are not worth a second build.
+In double, or for 8-bit output in float, of which a vector holds twice as many; what pixels see is exact in both. A row
+is `row` vectors: two of floats, four of doubles.
 """
 
 import cython
@@ -61,6 +61,7 @@ def multiply(bits: cython.pointer[Lanes], desk: Desk, kernel: cython.int, sample
 
 
 @cython.cfunc
+@cython.inline
 @cython.nogil
 @cython.exceptval(check=False)
 def add_up(
@@ -159,6 +160,7 @@ def smooth(t: Lanes, one: Lanes) -> Lanes:
 
 
 @cython.cfunc
+@cython.inline
 @cython.nogil
 @cython.exceptval(check=False)
 def blend(
@@ -202,6 +204,7 @@ def blend(
 
 
 @cython.cfunc
+@cython.inline
 @cython.nogil
 @cython.exceptval(check=False)
 def keep(

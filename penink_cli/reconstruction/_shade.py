@@ -1,7 +1,7 @@
 # cython: language_level=3, boundscheck=False, wraparound=False, cdivision=True
 """The attenuation of the samples of one tile at its pixels: equation 4, by rows of eight pixels.
 
-A row is a few vectors, ROW of them: two of floats, four of doubles.
+A row is `row` vectors: two of floats, four of doubles.
 """
 
 import cython

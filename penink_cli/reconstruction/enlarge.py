@@ -184,8 +184,9 @@ class _Enlargement:
             cell = np.concatenate([x.cell.repeat(np.diff(x.first)), x.cell[-1:].repeat(TILE)])
             self.offset = ((self.where - cell) / float(self.real.type(self.radius))).astype(self.real)
             self.hands: list[tuple[_search.Finder, _tile.Tile, _desk.Desk]] = []
-        rows = max(1, min(BAND // x.count, -(-y.count // (4 * threads))))
-        # Bands of whole tiles, as even as can be.
+        # Bands of whole tiles, as even as can be; where edges are near they take longer than elsewhere.
+        share = 2 if self.paths.empty else 4
+        rows = max(1, min(BAND // x.count, -(-y.count // (share * threads))))
         pieces = min(len(y.cell), -(-y.count // rows))
         cuts = [len(y.cell) * k // pieces for k in range(pieces + 1)]
         tasks = (partial(self.band, a, b) for a, b in pairwise(cuts))

@@ -1,8 +1,8 @@
 """How fast and how true enlargement is: `python -m tests.benchmarks.reconstruction [PART …]`.
 
-Parts: calls, photos, process, large, preprocess, accuracy, growth, table1. Times are given as ratios to Pillow's
-BICUBIC of the same 8-bit picture, measured in turns with it in the same run, the best of several. Two threads can be no
-faster than the machine lets any two be: `calls` first prints how much that is in this run.
+Parts: calls, limits, photos, process, large, preprocess, accuracy, growth, table1. Times are given as ratios to
+Pillow's BICUBIC of the same 8-bit picture, measured in turns with it in the same run, the best of several. Two threads
+can be no faster than the machine lets any two be: `calls` first prints how much that is in this run.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ import tempfile
 import threading
 import time
 from pathlib import Path
+from unittest import mock
 
 import numpy as np
 import skimage.data
@@ -25,6 +26,8 @@ from penink_cli.arrangement.detection import detect_edges
 from penink_cli.arrangement.validity import check
 from penink_cli.formats import edge_list
 from penink_cli.model import EdgeList, GreyImage
+from penink_cli.reconstruction import _render, _separable
+from penink_cli.reconstruction import enlarge as enlarging
 from penink_cli.reconstruction.enlarge import enlarge, reconstruct
 from penink_cli.reconstruction.paths import Paths
 from tests.reconstruction.scenes import SCENES, psnr, tones
@@ -139,6 +142,56 @@ def processor_time(tasks, rounds):
             task()
             best[k] = min(best[k], time.process_time() - start)
     return best
+
+
+def limits():
+    """What the parts of a call cost: none of them can be left out, and two threads at best halve their sum."""
+    print("Where a call's time goes, processor time of one thread in ms and, halved, to Pillow's")
+    row("samples", "make", "bare write", "one thread", "preprocessing", "plain pass", "near edges", "sum / 2 / Pillow")
+    for n, count, rounds in ((128, 500, 30), (1024, 20000, 3)):
+        image = noise(n, n)
+        base = processor_time([pillow(image, 8 * n, 8 * n)], rounds)[0]
+        write = processor_time([lambda: np.empty((8 * n, 8 * n), np.uint8).fill(1)], rounds)[0]
+        start = in_turns([one_thread], 100)[0]
+        for make, edges in (("none", None), ("arcs", arcs(n, n, count)), ("scattered", scattered(n, n, count))):
+            spent = {"Paths": np.inf, "retouch": 0.0 if edges is None else np.inf, "plain": np.inf}
+            for _ in range(rounds):
+                for name, seconds in stages(image, edges, 8 * n).items():
+                    spent[name] = min(spent[name], seconds)
+            paths, near, plain = spent["Paths"], spent["retouch"], spent["plain"]
+            whole = (paths + near + plain) / base / THREADS
+            row(f"{n}²→{8 * n}²", make, 1e3 * write, 1e3 * start, 1e3 * paths, 1e3 * plain, 1e3 * near, whole)
+
+
+def one_thread():
+    other = threading.Thread(target=lambda: None)
+    other.start()
+    other.join()
+
+
+def stages(image, edges, size) -> dict[str, float]:
+    """Processor time of the stages of one call on one thread: each compiled kernel, and the preparing of paths."""
+    spent: dict[str, float] = {}
+
+    def timed(module, name, stage):
+        whole = getattr(module, name)
+
+        def run(*arguments, **options):
+            start = time.process_time()
+            result = whole(*arguments, **options)
+            spent[stage] = spent.get(stage, 0.0) + time.process_time() - start
+            return result
+
+        return mock.patch.object(module, name, run)
+
+    with (
+        timed(enlarging, "Paths", "Paths"),
+        timed(_separable, "expand", "plain"),
+        timed(_separable, "combine", "plain"),
+        timed(_render, "retouch", "retouch"),
+    ):
+        enlarge(image, edges, size, size, threads=1)
+    return spent
 
 
 def photos():
@@ -286,7 +339,7 @@ def table1():
         row(name, f"{w}x{h}", count, f"{width}x{height}", float(pre), before, float(seconds), whole - before)
 
 
-PARTS = (calls, photos, process, large, preprocess, accuracy, growth, table1)
+PARTS = (calls, limits, photos, process, large, preprocess, accuracy, growth, table1)
 
 
 def main() -> None:
