@@ -285,6 +285,7 @@ def lay_out(
     i: cython.Py_ssize_t
     j: cython.Py_ssize_t
     f: cython.pointer[real]
+    columns: cython.pointer[real]
     kx: cython.pointer[real]
     values: cython.pointer[real]
     if real is cython.float:
@@ -293,10 +294,10 @@ def lay_out(
     else:
         kx = cython.cast(cython.p_double, desk.kx)
         values = cython.cast(cython.p_double, desk.values)
-    for i in range(4):
-        if memcmp(kx + 8 * i, xc + stride * i, 8 * cython.sizeof(xc[0])) != 0:
-            memcpy(kx + 8 * i, xc + stride * i, 8 * cython.sizeof(xc[0]))
-            memcpy(kx + 32 + 8 * i, xb + stride * i, 8 * cython.sizeof(xc[0]))
+    for i in range(8):
+        columns = xc + stride * i if i < 4 else xb + stride * (i - 4)
+        if memcmp(kx + 8 * i, columns, 8 * cython.sizeof(xc[0])) != 0:
+            memcpy(kx + 8 * i, columns, 8 * cython.sizeof(xc[0]))
             desk.known_weights[0] = desk.known_weights[1] = 0
     if memcmp(desk.ux, ux, 8 * cython.sizeof(xc[0])) != 0:
         memcpy(desk.ux, ux, 8 * cython.sizeof(xc[0]))
