@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 
 import click
 
-from penink_cli.errors import ParameterError, in_quotes
+from penink_cli.errors import ParameterError, in_quotes, printable
 from penink_cli.units import parse_length
 
 F = TypeVar("F", bound=Callable[..., Any])
@@ -178,6 +178,12 @@ verbose_option = click.option(
 def reporter(verbose: bool) -> Callable[[str], None]:
     """What takes lines for --verbose: to standard error, or nowhere."""
     return (lambda line: click.echo(line, err=True)) if verbose else (lambda line: None)
+
+
+def warn(line: str) -> None:
+    """A line on standard error, with the command's name: the result is right, but perhaps not what was meant."""
+    context = click.get_current_context(silent=True)
+    click.echo(f"{context.command_path if context else 'penink'}: warning: {printable(line)}", err=True)
 
 
 def processors() -> int:

@@ -13,6 +13,7 @@ PAPERS = {
         [(1000, 1414), (707, 1000), (500, 707), (353, 500), (250, 353), (176, 250)])},
     "letter": (612.0, 792.0), "legal": (612.0, 1008.0), "tabloid": (792.0, 1224.0), "executive": (522.0, 756.0),
 }  # fmt: skip
+SMALL_PT = 18.0  # a quarter of an inch: who asks for less has most likely forgotten the unit
 LIMIT = 1e6  # points; more than the biggest sheet of any of the formats
 
 
@@ -36,8 +37,13 @@ def paper_size(name: str) -> tuple[float, float]:
 
 
 def check_sheet(width_pt: float, height_pt: float) -> None:
-    """Refuse sheets of no size, and those that no memory holds."""
+    """Refuse sheets of no size, and those that no memory holds; warn of one that is smaller than a stamp."""
     if not (0.01 <= width_pt <= 144_000 and 0.01 <= height_pt <= 144_000):
         raise ParameterError(f"{width_pt:g} × {height_pt:g} pt on paper; from 0.01 to 144000 is allowed each way")
     if width_pt * height_pt > 60 * 40 * 5184 * 4:
         raise ParameterError(f"{width_pt:g} × {height_pt:g} pt on paper; 9600 square inches are allowed")
+    if min(width_pt, height_pt) < SMALL_PT:
+        from penink_cli.options import warn
+
+        size = f"{width_pt:.3g} × {height_pt:.3g} pt ({width_pt / _MM:.2g} × {height_pt / _MM:.2g} mm)"
+        warn(f"the drawing is {size} on paper, which shows little; a bare number is points, 72 to the inch")

@@ -116,6 +116,32 @@ def test_a_backslash_is_shown_once(penink):
     assert done.stderr == b"penink reduce: <stdin>: not a PGM image: begins with '\\n\\n', not P2 or P5\n"
 
 
+EDGES = b'{"format": "penink-edges", "version": 1, "width": 451, "height": 300, "vertices": [[9, 9], [99, 99]]'
+EDGES += b', "edges": [[0, 1]]}'
+
+
+@pytest.mark.parametrize(
+    ("width", "height", "warned"),
+    [(451, 300, 0), (100, 67, 0), (100, 66, 0), (902, 600, 0), (3, 2, 0), (384, 303, 1), (300, 451, 1), (902, 610, 1)],
+)
+def test_edges_of_a_picture_of_another_shape_are_warned_of(width, height, warned, penink, tmp_path):
+    (tmp_path / "e.json").write_bytes(EDGES)
+    photo = b"P5 %d %d 255\n" % (width, height) + bytes([200]) * (width * height)
+    done = penink("extract-samples", "-e", tmp_path / "e.json", input=photo)
+    assert done.returncode == 0 and done.stdout.startswith(b"P5\n%d" % width)
+    assert done.stderr.count(b"\n") == warned
+    told = f"451 x 300 pixels, and this of {width} x {height} has another shape"
+    assert (told in done.stderr.decode()) == bool(warned)
+
+
+def test_a_drawing_of_a_few_points_is_warned_of(penink):
+    done = penink("outline", "--width", "4", input=EDGES)
+    assert done.returncode == 0 and done.stdout
+    told = "penink outline: warning: the drawing is 4 × 2.66 pt (1.4 × 0.94 mm) on paper"
+    assert done.stderr.decode().startswith(told) and done.stderr.count(b"\n") == 1
+    assert not penink("outline", "--width", "4in", input=EDGES).stderr
+
+
 def test_lengths_are_points_and_know_their_units():
     assert units.parse_length("1in") == 72
     assert units.parse_length("25.4 mm".replace(" ", "")) == 72

@@ -19,6 +19,7 @@ from penink_cli.options import (
     reporter,
     threads_option,
     verbose_option,
+    warn,
 )
 from penink_cli.papers import check_sheet
 from penink_cli.progress import progress
@@ -117,7 +118,7 @@ def blast(
     ink = read_layers(ink_files) if ink_files else []
     tone = tone_curve(image, gamma)
     for line in warnings(tone, texture, pen, device_dpi):
-        click.echo(f"penink blast: warning: {line}", err=True)
+        warn(line)
     with progress(TICKS, "blasting", quiet) as more:
         strokes = blast_tone(
             tone,

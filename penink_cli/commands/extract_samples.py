@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import click
 
-from penink_cli.commands.inputs import only_one_standard_input, read_edges, read_photo
+from penink_cli.commands.inputs import only_one_standard_input, read_edges, read_photo, warn_of_another_shape
 from penink_cli.options import Finite, edges_option, filter_options, reporter, verbose_option
 from penink_cli.streams import writing
 
@@ -45,6 +45,7 @@ def extract_samples(
     edges = read_edges(edges_file, max_pixels)
     assert edges is not None
     photo = read_photo(file, max_pixels)
+    warn_of_another_shape(edges, photo)
     samples = extraction.extract_samples(photo.grey, edges, margin, reporter(verbose))
     with writing(output) as out:
         pgm.write(out, GreyImage.from_grey(samples, maxval))

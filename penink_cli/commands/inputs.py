@@ -9,6 +9,7 @@ import click
 
 from penink_cli import streams
 from penink_cli.errors import FormatError, LimitError, PeninkError
+from penink_cli.options import warn
 
 if TYPE_CHECKING:
     from penink_cli.model import EdgeList, GreyImage, Illustration
@@ -47,6 +48,19 @@ def read_edges(path: str | None, max_pixels: int = 0) -> EdgeList | None:
     except PeninkError as error:
         raise error.from_source(source) from None
     return edges
+
+
+def warn_of_another_shape(edges: EdgeList, photo: GreyImage) -> None:
+    """Warn where no resizing, rounded to whole pixels, leads from the edges' frame to the photo.
+
+    The photo may be larger or smaller than the one the edges were found in, but hardly of another shape.
+    """
+    height, width = photo.values.shape
+    least = max((width - 1) / edges.width, (height - 1) / edges.height)
+    most = min((width + 1) / edges.width, (height + 1) / edges.height)
+    if least > most:
+        frame = f"{edges.width} x {edges.height}"
+        warn(f"the edges are of a picture of {frame} pixels, and this of {width} x {height} has another shape")
 
 
 def read_illustration(path: str | None, max_pixels: int) -> Illustration:

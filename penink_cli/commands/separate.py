@@ -7,7 +7,7 @@ from typing import Any
 
 import click
 
-from penink_cli.commands.inputs import only_one_standard_input, read_edges, read_photo
+from penink_cli.commands.inputs import only_one_standard_input, read_edges, read_photo, warn_of_another_shape
 from penink_cli.commands.outline import Point
 from penink_cli.errors import in_quotes
 from penink_cli.options import edges_option, filter_options
@@ -87,6 +87,7 @@ def separate(
     else:
         edges = read_edges(edges_file, max_pixels)
         assert edges is not None
+        warn_of_another_shape(edges, photo)
         share = overlays.by_region(photo, edges, points)
     with writing(output) as out:
         pgm.write(out, overlays.overlay(photo, share, invert))

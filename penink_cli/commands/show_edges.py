@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import click
 
-from penink_cli.commands.inputs import only_one_standard_input, read_edges, read_photo
+from penink_cli.commands.inputs import only_one_standard_input, read_edges, read_photo, warn_of_another_shape
 from penink_cli.options import POSITIVE, Finite, edges_option, filter_options
 from penink_cli.streams import writing
 
@@ -38,6 +38,7 @@ def show_edges(
     edges = read_edges(edges_file, max_pixels)
     assert edges is not None
     photo = read_photo(file, max_pixels)
+    warn_of_another_shape(edges, photo)
     contaminated = extraction.contaminated(photo.grey, edges, margin)
     with writing(output, binary=False) as out:
         edge_picture.write(out, photo, edges, contaminated, scale)

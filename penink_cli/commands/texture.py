@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from penink_cli.errors import ParameterError
-from penink_cli.options import LENGTH, Finite, Length, output_options
+from penink_cli.options import LENGTH, DeviceDpi, Finite, Length, output_options, warn
 from penink_cli.streams import reading, source_name, writing
 from penink_cli.texture_options import find_texture, shipped
 from penink_cli.textures.kinds import KINDS
@@ -67,9 +68,9 @@ def describe(found: Texture, device_dpi: float | None) -> str:
 @texture.command()
 @click.argument("name", metavar="NAME|FILE")
 @click.option("--json", "as_file", is_flag=True, help="Write the texture file itself.")
-@click.option("--device-dpi", type=Finite(10, 100_000), default=600, show_default=True, metavar="N")
+@click.option("--device-dpi", type=DeviceDpi(), default="600", show_default=True, metavar="N|none")
 @output_options
-def show(name: str, as_file: bool, device_dpi: float, output: str | None, **_: Any) -> None:
+def show(name: str, as_file: bool, device_dpi: float | None, output: str | None, **_: Any) -> None:
     """Say what a texture is like, and from which tone to which it reaches."""
     found = find_texture(name)
     text = None if as_file else describe(found, device_dpi)
@@ -89,6 +90,7 @@ def show(name: str, as_file: bool, device_dpi: float, output: str | None, **_: A
 @click.option("--pen", type=LENGTH, help="Width of the strokes.")
 @click.option("--layers", type=click.IntRange(1, 4), metavar="1…4", help="Directions of hatching.")
 @click.option("--seed", type=click.IntRange(0, 2**63 - 1), default=0, show_default=True, metavar="N")
+@click.option("--name", help="The texture's name.  [default: KIND]")
 @output_options
 def make(
     kind: str,
@@ -97,6 +99,7 @@ def make(
     pen: float | None,
     layers: int | None,
     seed: int,
+    name: str | None,
     output: str | None,
     **_: Any,
 ) -> None:
@@ -107,6 +110,8 @@ def make(
     from penink_cli.textures.make import make as make_texture
 
     made = make_texture(kind, angle=angle, pen=pen, spacing=spacing, layers=layers, seed=seed)
+    if name:
+        made = replace(made, name=name)
     from penink_cli.formats import texture as texture_format
 
     with writing(output, binary=False) as out:
@@ -125,14 +130,14 @@ def import_svg(
     """Make a texture of an SVG drawing.
 
     Its paths, lines and shapes become strokes, in their order, which is the priority: what is drawn first comes
-    first. The drawing's size is the tile's.
+    first. The drawing's size is the tile's. Text and images are left out: turn text to paths first.
     """
     from penink_cli.formats import svg_texture
 
     source = source_name(file)
     with reading(file) as stream:
         title = name or (source.rsplit("/", 1)[-1].removesuffix(".svg") if file and file != "-" else "imported")
-        drawing = svg_texture.read(stream, source, title, pen, whole)
+        drawing = svg_texture.read(stream, source, title, pen, whole, lambda line: warn(f"{source}: {line}"))
     if not len(drawing.strokes):
         raise ParameterError("no stroke in the drawing").from_source(source)
     from penink_cli.formats import texture as texture_format

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from collections.abc import Callable
 from typing import Any, BinaryIO
 from xml.etree.ElementTree import ParseError
 
@@ -19,18 +20,25 @@ USUAL_PEN_PT = 0.4
 CLOSED = 1e-6  # pixels: arcs do not come round to the very digit, and a shape is closed all the same
 
 
-def read(stream: BinaryIO, source: str, name: str, pen_pt: float | None = None, whole: bool = False) -> Texture:
+def read(
+    stream: BinaryIO,
+    source: str,
+    name: str,
+    pen_pt: float | None = None,
+    whole: bool = False,
+    report: Callable[[str], None] = lambda line: None,
+) -> Texture:
     """The texture that an SVG drawing makes.
 
     Everything that has an outline counts, filled or not: paths, lines, polygons, circles …, their transforms applied;
     a subpath is a stroke. The tile is the drawing's size. pen_pt: the width of all strokes; by default each
-    one's stroke-width, or 0.4 pt where it has none. Raises FormatError.
+    one's stroke-width, or 0.4 pt where it has none. report: told what is left out, text and images. Raises FormatError.
     """
     text = stream.read(MAX_BYTES + 1)
     try:
         if len(text) > MAX_BYTES:
             raise FormatError(f"larger than {MAX_BYTES} bytes")
-        return _texture(_parse(text), name, pen_pt, whole)
+        return _texture(_parse(text), name, pen_pt, whole, report)
     except FormatError as error:
         from penink_cli.formats.recognise import explained
 
@@ -52,7 +60,9 @@ def _parse(text: bytes) -> Any:
     return drawing
 
 
-def _texture(drawing: Any, name: str, pen_pt: float | None, whole: bool) -> Texture:
+def _texture(
+    drawing: Any, name: str, pen_pt: float | None, whole: bool, report: Callable[[str], None]
+) -> Texture:
     import svgelements
 
     size = [_number(getattr(drawing, side, None)) for side in ("width", "height")]
@@ -60,7 +70,10 @@ def _texture(drawing: Any, name: str, pen_pt: float | None, whole: bool) -> Text
         raise FormatError("the drawing has no size: width and height, or a viewBox, are needed")
     strokes: list[Floats] = []
     widths: list[float] = []
+    left_out = {"text": 0, "image": 0}
     for element in drawing.elements():
+        if isinstance(element, (svgelements.Text, svgelements.Image)):
+            left_out["image" if isinstance(element, svgelements.Image) else "text"] += 1
         if not isinstance(element, svgelements.Shape) or element.values.get("visibility") == "hidden":
             continue
         width = _number(element.stroke_width) * POINTS_PER_PIXEL if element.stroke.value is not None else 0.0
@@ -69,8 +82,11 @@ def _texture(drawing: Any, name: str, pen_pt: float | None, whole: bool) -> Text
             widths.append(pen_pt or (width if width >= 0.0001 else USUAL_PEN_PT))
             if len(strokes) > MAX_STROKES:
                 raise FormatError(f"more than {MAX_STROKES} strokes")
+    dropped = " and ".join(f"{count} {what}{'s' * (count > 1)}" for what, count in left_out.items() if count)
     if not strokes:
-        raise FormatError("no path, line or shape in the drawing")
+        raise FormatError(f"no path, line or shape in the drawing{', only ' * bool(dropped)}{dropped}")
+    if dropped:
+        report(f"{dropped} left out; turn text to paths to have it")
     points = np.concatenate(strokes)
     if not (np.abs(points) <= LIMIT).all():
         raise FormatError(f"a coordinate that is no number, or is beyond ±{LIMIT:.0f} pt")

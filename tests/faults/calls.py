@@ -32,7 +32,7 @@ CALLS = {
     "extract-samples": Call("photo.png", ("-e", "photo.edges.json")),
     "reduce": Call("samples.pgm", ("-e", "photo.edges.json", "--factor", "2")),
     "enlarge": Call("samples.pgm", ("-e", "photo.edges.json", "--scale", "3")),
-    "blast": Call("samples.pgm", ("--texture", "crosshatch", "--width", "0.3in", "-e", "photo.edges.json")),
+    "blast": Call("samples.pgm", ("--texture", "crosshatch", "--width", "0.35in", "-e", "photo.edges.json")),
     "to-ps": Call("photo.strokes.jsonl"),
     "to-svg": Call("photo.strokes.jsonl"),
     "to-pdf": Call("photo.strokes.jsonl"),
@@ -40,9 +40,9 @@ CALLS = {
     "to-png": Call("photo.strokes.jsonl", ("--dpi", "100")),
     "show-edges": Call("photo.png", ("-e", "photo.edges.json")),
     "separate": Call("photo.png", ("--grey", "0,0.5")),
-    "outline": Call("photo.edges.json", ("--width", "0.3in")),
+    "outline": Call("photo.edges.json", ("--width", "0.35in")),
     "render": Call("photo.illustration.json", ("--scale", "1")),
-    "draw": Call("photo.png", ("--width", "0.3in", "--texture", "crosshatch")),
+    "draw": Call("photo.png", ("--width", "0.35in", "--texture", "crosshatch")),
     "pack": Call("photo.illustration.json"),
     "to-html": Call("photo.illustration.json"),
     "texture": Call(None, ("make", "brick", "--seed", "1")),
@@ -93,7 +93,7 @@ def make_inputs(folder: Path) -> None:
     )
     (folder / "photo.strokes.jsonl").write_bytes(drawn)
     layer = {"samples": "samples.pgm", "edges": "photo.edges.json", "texture": "crosshatch", "outline": {}}
-    manifest = {"format": "penink-illustration", "version": 1, "width": 21.6, "height": 16.2, "layers": [layer]}
+    manifest = {"format": "penink-illustration", "version": 1, "width": 25.2, "height": 18.9, "layers": [layer]}
     (folder / "photo.illustration.json").write_text(json.dumps(manifest))
 
 

@@ -86,6 +86,11 @@ def checked(name: str, out: bytes) -> None:
         assert out.startswith((b"%!PS", b"%PDF", b"<?xml", b"<svg", b"<!", b"PK", b"\x89PNG")), out[:20]
 
 
+def complaints(err: bytes) -> bytes:
+    """What is on standard error but for the warning that a drawing is small, as most of these are."""
+    return b"".join(line for line in err.splitlines(True) if b": warning: the drawing is " not in line)
+
+
 def words(name: str, folder: Path) -> list[str]:
     """The call's arguments, its files in ``folder``."""
     return [str(folder / word) if (folder / word).exists() else word for word in CALLS[name].arguments]
@@ -99,7 +104,7 @@ def test_images(name, kind, server, inputs, tmp_path):
     for edges in EDGES.values():
         (tmp_path / "photo.edges.json").write_bytes(encoded(edge_list.write, edges(width, height)))
         done = server.run(name, *words(name, tmp_path), stdin=encoded(pgm.write, given))
-        assert (done.status, done.err) == (0, b"")
+        assert (done.status, complaints(done.err)) == (0, b"")
         checked(name, done.out)
         if "-e" not in CALLS[name].arguments:
             break
@@ -110,7 +115,7 @@ def test_images(name, kind, server, inputs, tmp_path):
 def test_edge_lists(name, kind, server, inputs):
     for width, height in ((1, 1), (1, 9), (12, 1), (12, 9)):
         done = server.run(name, *words(name, inputs), stdin=encoded(edge_list.write, EDGES[kind](width, height)))
-        assert (done.status, done.err) == (0, b"")
+        assert (done.status, complaints(done.err)) == (0, b"")
         checked(name, done.out)
 
 

@@ -109,7 +109,7 @@ def test_numbers_are_the_doubles_that_python_reads(text):
         (b"", "empty"),
         (b"\n", "line 1"),
         (b"[]\n", "line 1: no header"),
-        (b'{"format": "penink-edges", "version": 1, "width": 1, "height": 1}\n', "not strokes but an edge list: `penink outline`"),
+        (b'{"format": "penink-edges", "version": 1, "width": 1, "height": 1}\n', "not strokes but an edge list"),
         (b'{"format": "penink-strokes", "version": 2, "width": 1, "height": 1}\n', "line 1: version 2"),
         (b'{"format": "penink-strokes", "version": true, "width": 1, "height": 1}\n', "line 1: version true"),
         (b'{"format": "penink-strokes", "version": 1.0, "width": 1, "height": 1}\n', "line 1: version 1.0"),

@@ -148,6 +148,23 @@ def test_what_is_no_drawing_is_refused(text):
         svg_texture.read(io.BytesIO(text), "d.svg", "d")
 
 
+def test_what_a_drawing_s_import_leaves_out_is_said(penink):
+    text = b'<text x="1" y="5">a</text><text x="1" y="9">b</text><image href="p.png" width="9" height="9"/></svg>'
+    done = penink("texture", "import", input=SVG.replace(b"</svg>", text))
+    assert done.returncode == 0 and done.stdout == penink("texture", "import", input=SVG).stdout
+    told = b"penink texture import: warning: <stdin>: 2 texts and 1 image left out; turn text to paths to have it\n"
+    assert done.stderr == told
+    assert not penink("texture", "import", input=SVG).stderr
+    only = penink("texture", "import", input=b'<svg xmlns="http://www.w3.org/2000/svg" width="9" height="9">' + text)
+    assert only.returncode == 1
+
+
+def test_a_plotter_s_reach_and_a_name_of_one_s_own(penink):
+    assert b" without a device" in penink("texture", "show", "stipple", "--device-dpi", "none").stdout
+    made = penink("texture", "make", "parallel", "--name", "mine").stdout
+    assert texture.read(io.BytesIO(made), "x").name == "mine"
+
+
 def test_the_command_lists_shows_makes_and_imports(penink):
     assert penink("texture", "list").stdout.decode().split("\n")[0].startswith("brick")
     shown = penink("texture", "show", "crosshatch")
