@@ -9,20 +9,24 @@ import numpy as np
 import numpy.typing as npt
 
 from penink_cli.arrangement import _planar
+from penink_cli.arrangement._planar import Planar
 from penink_cli.arrangement.chains import Chains, chain_lengths, link_chains
 from penink_cli.arrangement.corners import sharpen
 from penink_cli.arrangement.gradient import EdgePoints, edge_points, noise_level
 from penink_cli.arrangement.joints import Joints, join_ends, loose_ends
+from penink_cli.arrangement.junctions import settle_junctions
 from penink_cli.arrangement.planar import from_units, planar, to_units
 from penink_cli.arrangement.simplification import simplify
 from penink_cli.arrangement.smoothing import position_error, smooth, unbend
-from penink_cli.model import EdgeList
+from penink_cli.model import EdgeList, Floats
 
 TOLERANCE = 0.3
 MIN_LENGTH = 6.0
 TELLING = 13.0  # the median of grass and fur is 6, of outlines over 20
 _ALONE = 2.0  # times as steep as what is around: texture reaches 1.4 to 2, letters 2.5 to 3.3
 _BRIDGE = 0.4  # of that is enough for a chain that leads from one telling chain to another, or to the frame
+_LEAST_LENS = 0.32  # pixels
+_OWN = 1 / 12 + 1 / 3  # variance, pixels², of what a pixel's area and the central difference add to a blur
 _CAMERA_BLUR = 0.8  # pixels: pixel area, lens and the central difference, where nothing better is known
 
 
@@ -69,7 +73,12 @@ def detect_edges(
     points, chains = replace(points, position=sharp.position), sharp.chains
     points = replace(points, position=smooth(points.position, sharp.pieces, error))
     points = replace(points, position=unbend(points, sharp.pieces, blur))
-    return _arrange(points, chains, join_ends(points, chains, blur), tolerance, steepness)
+    lens = float(np.sqrt(max(_LEAST_LENS**2, blur * blur - sigma * sigma - _OWN)))
+
+    def settle(arrangement: Planar, step: Floats) -> None:
+        settle_junctions(arrangement, grey, step, lens, noise, blur)
+
+    return _arrange(points, chains, join_ends(points, chains, blur), tolerance, steepness, settle)
 
 
 def _compact(points: EdgePoints, chains: Chains) -> tuple[EdgePoints, Chains]:
@@ -118,7 +127,14 @@ def _telling(points: EdgePoints, chains: Chains, high: float, min_length: float,
     return chains.where(telling)
 
 
-def _arrange(points: EdgePoints, chains: Chains, joints: Joints, tolerance: float, steepness: float) -> EdgeList:
+def _arrange(
+    points: EdgePoints,
+    chains: Chains,
+    joints: Joints,
+    tolerance: float,
+    steepness: float,
+    settle: Callable[[Planar, Floats], None],
+) -> EdgeList:
     height, width = points.shape
     places = joints.places
     positions = np.concatenate([np.clip(points.position, 0, (width, height)), places])
@@ -131,9 +147,10 @@ def _arrange(points: EdgePoints, chains: Chains, joints: Joints, tolerance: floa
     arrangement = planar(width, height, to_units(positions), ends)
     _planar.insert(arrangement, ends)
     simplify(arrangement, tolerance, width, height)
+    step = np.concatenate([points.magnitude / steepness, np.zeros(len(places))])
+    settle(arrangement, step)
     live = np.asarray(arrangement.live)[: len(ends)].astype(bool)
     edges = np.asarray(arrangement.ends)[live].astype(np.int64)
-    step = np.concatenate([points.magnitude / steepness, np.zeros(len(places))])
     strength = np.clip(step[edges].max(axis=1), 0, 1)
     used, edges = np.unique(edges, return_inverse=True)
     vertices = from_units(np.asarray(arrangement.vertices)[used])

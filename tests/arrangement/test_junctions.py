@@ -1,0 +1,117 @@
+"""Corners and junctions settled by what the picture shows."""
+
+import numpy as np
+import pytest
+from scipy.ndimage import gaussian_filter, label
+
+from penink_cli.arrangement import _window
+from penink_cli.arrangement.detection import detect_edges
+from penink_cli.arrangement.junctions import _taps
+from penink_cli.arrangement.places import Place
+from tests.benchmarks._scenes import Scene, polygon
+from tests.benchmarks.edges import along
+
+FINE = _window.FINE
+
+
+def test_the_compiled_kernel_is_under_test():
+    assert _window.COMPILED
+
+
+def seen_by(tip, blur, size=20, grey=(0.3, 0.7)):
+    """A photo of the wedge right of tip, its arms going to the frame, and its edges."""
+    at = (np.arange(size * 12) + 0.5) / 12
+    x, y = at[None] - tip[0], at[:, None] - tip[1]
+    fine = np.where(np.abs(y) < 0.8 * x, grey[1], grey[0])
+    lens = gaussian_filter(fine, 12 * blur, mode="nearest")
+    photo = lens.reshape(size, 12, size, 12).mean(axis=(1, 3)).astype(np.float32)
+    far = 30.0
+    vertices = np.array([tip, (tip[0] + far, tip[1] - 0.8 * far), (tip[0] + far, tip[1] + 0.8 * far)])
+    return photo, vertices, np.array([(0, 1), (0, 2)], np.int32)
+
+
+def window(photo, blur):
+    found = _window.Window(photo, _taps(blur), float(np.hypot(blur, np.sqrt(1 / 12))))
+    assert found.place(0, 0, 20, 20, 3) == 400  # all of a photo is compared
+    return found
+
+
+def slow_left_over(photo, vertices, ends, blur):
+    """The same model with regions by scipy, the blur as a matrix and least squares by numpy."""
+    size = len(photo)
+    at = (np.arange(size * FINE) + 0.5) / FINE
+    tip = vertices[0]
+    wedge = np.abs(at[:, None] - tip[1]) < 0.8 * (at[None] - tip[0])
+    regions = [label(wedge)[0] == 1, ~wedge]
+    taps = _taps(blur)
+    reach = len(taps) // 2
+    camera = np.zeros((size, size * FINE))
+    for i in range(size):
+        for d, tap in zip(range(-reach, reach + 1), taps):
+            camera[i, np.clip(FINE * i + FINE // 2 + d, 0, size * FINE - 1)] += tap
+    columns = [camera @ region @ camera.T for region in regions]
+    columns += list(np.mgrid[:size, :size] - size / 2)
+    design = np.stack(columns, -1).reshape(-1, 4)
+    rest = photo.ravel() - 0.5 - design @ np.linalg.lstsq(design, photo.ravel() - 0.5, rcond=None)[0]
+    return float(rest @ rest)
+
+
+@pytest.mark.parametrize("blur", [0.4, 0.9])
+@pytest.mark.parametrize("off", [(0.0, 0.0), (0.8, 0.0), (-0.5, 1.1)])
+def test_a_window_is_rendered_as_regions_seen_through_the_camera(blur, off):
+    photo, vertices, ends = seen_by((8.3, 9.6), blur)
+    vertices = vertices + off
+    none = np.full(3, -1, np.int32)
+    found = window(photo, blur).settle(ends, vertices.copy(), none, 0, np.zeros((0, 6)), 0)
+    assert found == pytest.approx(slow_left_over(photo, vertices, ends, blur), rel=1e-2, abs=1e-5)
+
+
+@pytest.mark.parametrize("off", [(0.7, 0.2), (-0.6, -0.8), (2.0, 0.0)])
+def test_a_tip_settles_where_it_is(off):
+    photo, vertices, ends = seen_by((8.3, 9.6), 0.8)
+    moved = vertices.copy()
+    moved[0] += off
+    left = window(photo, 0.8).settle(ends, moved, np.array([0, -1, -1], np.int32), 1, np.zeros((1, 6)), 12)
+    assert np.hypot(*(moved[0] - vertices[0])) < 0.15
+    assert left < 0.01
+
+
+def test_what_is_known_holds_a_vertex():
+    photo, vertices, ends = seen_by((8.3, 9.6), 0.8)
+    moved = vertices.copy()
+    moved[0] += (0.7, 0.2)
+    x, y = moved[0]
+    held = 1e6 * np.array([[1.0, 0.0, 1.0, x, y, x * x + y * y]])
+    start = moved.copy()
+    window(photo, 0.8).settle(ends, moved, np.array([0, -1, -1], np.int32), 1, held, 12)
+    assert np.abs(moved - start).max() < 1e-3
+
+
+def test_too_many_regions_are_refused():
+    photo, _, _ = seen_by((8.3, 9.6), 0.8)
+    vertices = np.array([(x, y) for x in range(1, 15) for y in (0.0, 20.0)])
+    ends = np.arange(28, dtype=np.int32).reshape(-1, 2)
+    none = np.full(28, -1, np.int32)
+    assert window(photo, 0.8).settle(ends, vertices, none, 0, np.zeros((0, 6)), 0) < 0
+
+
+def test_a_bevel_may_be_a_corner_and_an_open_end_may_meet_an_edge():
+    place = Place({0: (0, 0), 1: (9, 0), 2: (10, 1), 3: (10, 9)}, [(0, 1, 0), (1, 2, 1), (2, 3, 2)], frozenset({1, 2}))
+    corners = [other.at[1] for other in place.changes(4) if len(other.edges) == 2]
+    assert (10.0, 0.0) in corners
+    bar = Place({0: (0, 0), 1: (9, 0), 2: (5, 1), 3: (5, 9)}, [(0, 1, 0), (2, 3, 1)], frozenset({2}))
+    (tee,) = list(bar.changes(4))
+    assert tee.at[2] == (5.0, 0.0) and {frozenset(e[:2]) for e in tee.edges} == {
+        frozenset(e) for e in ((2, 3), (0, 2), (2, 1))
+    }
+
+
+@pytest.mark.parametrize(("blur", "noise"), [(0.5, 0), (1.0, 2), (1.5, 2)])
+def test_a_tip_of_forty_degrees_is_closed(blur, noise):
+    scene = Scene(100, [polygon([(20, 50), (80, 28.2), (80, 71.8)], (0.8, 0, 0))])
+    edges = detect_edges(scene.photo(blur, noise, 3))
+    ends = np.bincount(edges.edges.ravel())
+    seen = along(edges)
+    assert (ends == 2).all()
+    for corner in scene.shapes[0].corners:
+        assert np.hypot(*(seen - corner).T).min() < 1
