@@ -36,7 +36,7 @@ needs-python:
 	@PYTHON="$(PYTHON)" .ci/need python-venv python3-venv
 	@PYTHON="$(PYTHON)" .ci/need python-headers python3-dev
 
-$(INSTALLED): pyproject.toml penink_cli/__init__.py $(KERNELS) $(wildcard penink_cli/*/*.pxd) | needs-python
+$(INSTALLED): pyproject.toml penink_cli/__init__.py $(KERNELS) $(wildcard penink_cli/*/*.pxd penink_cli/*/*.h) | needs-python
 	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[test,lint]'
 	touch $@
