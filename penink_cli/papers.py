@@ -42,7 +42,7 @@ def check_sheet(width_pt: float, height_pt: float) -> None:
         raise ParameterError(f"{width_pt:g} × {height_pt:g} pt on paper; from 0.01 to 144000 is allowed each way")
     if width_pt * height_pt > 60 * 40 * 5184 * 4:
         raise ParameterError(f"{width_pt:g} × {height_pt:g} pt on paper; 9600 square inches are allowed")
-    if min(width_pt, height_pt) < SMALL_PT:
+    if max(width_pt, height_pt) < SMALL_PT:
         from penink_cli.options import warn
 
         size = f"{width_pt:.3g} × {height_pt:.3g} pt ({width_pt / _MM:.2g} × {height_pt / _MM:.2g} mm)"

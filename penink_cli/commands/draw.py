@@ -14,7 +14,7 @@ from click.core import ParameterSource
 
 from penink_cli.commands.blast import warnings
 from penink_cli.commands.inputs import read_photo
-from penink_cli.errors import printable
+from penink_cli.errors import in_quotes
 from penink_cli.options import LENGTH, DeviceDpi, Finite, filter_options, processors, threads_option, verbose_option
 from penink_cli.papers import check_sheet
 from penink_cli.streams import writing
@@ -79,7 +79,7 @@ def draw(
 
     ending = os.path.splitext(output or "-")[1].lower() or ".ps"  # a FIFO or device has no ending
     if ending not in WRITERS:
-        raise click.UsageError(f"-o {printable(output or '', 60)!r}: known endings are {', '.join(WRITERS)}")
+        raise click.UsageError(f"-o {in_quotes(output or '')}: known endings are {', '.join(WRITERS)}")
     threads = threads or processors()
     texture = find_texture(texture_name)
     photo = read_photo(file, max_pixels)

@@ -23,21 +23,12 @@ import numpy.typing as npt
 
 from penink_cli.errors import FormatError, LimitError, PeninkError, in_quotes, printable
 from penink_cli.formats import damage, pgm
+from penink_cli.formats.signatures import SIGNATURES
 from penink_cli.model import GreyImage
 
 if TYPE_CHECKING:
     from PIL import Image
 
-# How each format begins, and Pillow's name for it.
-SIGNATURES = (
-    (b"\x89PNG\r\n\x1a\n", "PNG"),
-    (b"\xff\xd8\xff", "JPEG"),
-    (b"II*\x00", "TIFF"),
-    (b"MM\x00*", "TIFF"),
-    (b"II+\x00", "TIFF"),
-    (b"MM\x00+", "TIFF"),
-    (b"RIFF", "WEBP"),
-)
 BAND = 1 << 20  # pixels converted at a time
 BYTES_PER_PIXEL = 9  # of 16-bit RGBA that does not compress, and some
 METADATA = 1 << 24  # bytes that an encoded photograph may have besides

@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 
 from penink_cli.errors import FormatError, PeninkError
-from penink_cli.formats.photo import SIGNATURES
+from penink_cli.formats.signatures import SIGNATURES
 
 ENOUGH = 4096  # bytes to tell one kind from another
 

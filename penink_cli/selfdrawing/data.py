@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from penink_cli.blasting import screens
 from penink_cli.blasting.outlines import Run, runs
 from penink_cli.errors import LimitError
 from penink_cli.model import EdgeList, Floats, GreyImage, Illustration, Ints, Layer
 from penink_cli.selfdrawing.lattice import PARTS, on_lattice
-from penink_cli.textures import threshold
 from penink_cli.trails import trails
 
 #: Arrays of a Level 2 interpreter hold 65535 entries, one a sample: 254 × 254 and its border.
@@ -41,7 +41,7 @@ class LayerData:
     ends: int
     outline_pt: float
     gamma: float
-    table: threshold.ThresholdTable
+    table: screens.ThresholdTable
     family: int
 
 
@@ -88,7 +88,7 @@ def _layer(layer: Layer, w: int, h: int, number: int, family: int) -> LayerData:
     return LayerData(
         w, h, layer.levels, samples_bytes(ink_levels(layer), layer.levels), b"".join(chains),
         len(chains), outlined, len(np.unique(ends)), len(ends),
-        layer.outline.pen_pt if layer.outline else 0.0, layer.gamma, threshold.table(layer.texture, layer.pen_pt),
+        layer.outline.pen_pt if layer.outline else 0.0, layer.gamma, screens.table(layer.texture, layer.pen_pt),
         family,
     )  # fmt: skip
 
@@ -174,14 +174,14 @@ def _chain_bytes(at: Ints, pressure: int | None = None) -> bytes:
     return b"".join(parts)
 
 
-def is_sent(screen: threshold.Screen) -> bool:
+def is_sent(screen: screens.Screen) -> bool:
     """Whether a screen's strokes are sent: a renderer makes lines itself, and repeats what it has."""
     return screen.layer is None and screen.again is None
 
 
-def tile_bytes(screen: threshold.Screen) -> bytes:
+def tile_bytes(screen: screens.Screen) -> bytes:
     """Strokes that are not lines: threshold in 255ths, first point, three steps from there, in quarters of a point."""
-    control = np.rint(screen.points.reshape(-1, 4, 2) / threshold.GRID_PT).astype(np.int64)
+    control = np.rint(screen.points.reshape(-1, 4, 2) / screens.GRID_PT).astype(np.int64)
     limits = np.rint(screen.enters * 255).astype(np.int64)
     parts = []
     for limit, points in zip(limits.tolist(), control.tolist(), strict=True):

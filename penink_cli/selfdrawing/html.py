@@ -9,10 +9,10 @@ import html
 import json
 from typing import Any
 
+from penink_cli.blasting.screens import Screen
 from penink_cli.model import Illustration
 from penink_cli.selfdrawing import packer
 from penink_cli.selfdrawing.data import LayerData, is_sent, layers, tile_bytes
-from penink_cli.textures.threshold import Screen
 
 SOURCES = ("unpack.js", "reconstruct.js", "drawing.js", "outline.js", "data.js", "raster.js", "page.js")
 

@@ -9,10 +9,10 @@ from __future__ import annotations
 
 import math
 
+from penink_cli.blasting.screens import Screen
 from penink_cli.model import Illustration
 from penink_cli.selfdrawing import packer
 from penink_cli.selfdrawing.data import LayerData, is_sent, layers, tile_bytes
-from penink_cli.textures.threshold import Screen
 
 SOURCES = ("reconstruct.ps", "texture.ps", "drawing.ps", "outline.ps", "data.ps", "page.ps")
 PACKINGS = ("flate", "lzw", "readable")

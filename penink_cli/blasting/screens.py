@@ -24,7 +24,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from penink_cli.blasting import tile as blasting
+from penink_cli.blasting.tile import thresholds
 from penink_cli.model import Floats, HatchLayer, Ints, Texture
 from penink_cli.textures.even import direction
 
@@ -209,7 +209,7 @@ def strokes(texture: Texture) -> Screen:
     """The screen of any other texture: the segments of its tile's strokes, on a grid of 1/4 pt."""
     tile = texture.strokes
     pen = float(np.median(tile.widths)) + WIDENED_PT
-    enters = blasting.thresholds(texture, WIDENED_PT / 1.27)
+    enters = thresholds(texture, WIDENED_PT / 1.27)
     points, limits, equal = [], [], []
     for i in np.flatnonzero(enters <= LATEST).tolist():
         stroke = tile[i]
