@@ -29,6 +29,7 @@ Window = tuple[int, int, int, int]
 Rows = npt.NDArray[Any]
 
 BAND = 1 << 20  # pixels of one band: small enough to be done soon, large enough to be worth a task
+SMALL = 1 << 22  # pixels without edges: they are done in less time than a second thread takes to start and to hand on
 
 
 def enlarge(
@@ -184,6 +185,8 @@ class _Enlargement:
             cell = np.concatenate([x.cell.repeat(np.diff(x.first)), x.cell[-1:].repeat(TILE)])
             self.offset = ((self.where - cell) / float(self.real.type(self.radius))).astype(self.real)
             self.hands: list[tuple[_search.Finder, _tile.Tile, _desk.Desk]] = []
+        if self.paths.empty and x.count * y.count < SMALL:
+            threads = 1
         # Bands of whole tiles, as even as can be; where edges are near they take longer than elsewhere.
         share = 2 if self.paths.empty else 4
         rows = max(1, min(BAND // x.count, -(-y.count // (share * threads))))
