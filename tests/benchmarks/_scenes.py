@@ -101,7 +101,8 @@ def polygon(corners, grey):
         [a + np.linspace(0, 1, max(2, int(np.hypot(*(b - a)) / STEP)), endpoint=False)[:, None] * (b - a)
          for a, b in zip(corners, following)]
     )  # fmt: skip
-    turn = np.sign(np.cross(corners[1] - corners[0], corners[2] - corners[1]))
+    (ax, ay), (bx, by) = corners[1] - corners[0], corners[2] - corners[1]
+    turn = np.sign(ax * by - ay * bx)
 
     def inside(x, y):
         result = True
