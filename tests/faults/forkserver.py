@@ -130,7 +130,7 @@ def _serve(connection: socket.socket) -> None:
     import penink_cli.main
 
     for module in pkgutil.walk_packages(penink_cli.__path__, "penink_cli."):
-        if not module.name.endswith("__main__"):
+        if not module.name.endswith(("__main__", ".compiling")):  # the command itself, and the build, which needs Cython
             importlib.import_module(module.name)
     import PIL.Image
 
