@@ -130,7 +130,8 @@ def _serve(connection: socket.socket) -> None:
     import penink_cli.main
 
     for module in pkgutil.walk_packages(penink_cli.__path__, "penink_cli."):
-        if not module.name.endswith(("__main__", ".compiling")):  # the command itself, and the build, which needs Cython
+        # not the command itself, and not what compiles it, which needs Cython
+        if not module.name.endswith(("__main__", ".compiling")):
             importlib.import_module(module.name)
     import PIL.Image
 
