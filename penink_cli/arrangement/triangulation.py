@@ -84,11 +84,6 @@ class Triangulation:
             out[i] = self.regions[t]
         return out
 
-    def surrounding(self, region: int) -> npt.NDArray[np.bool_]:
-        """(t, 3) the sides that bound a region: those fixed, or on the frame, with another region beyond or none."""
-        beyond = np.where(self.neighbours < 0, -1, self.regions[self.neighbours])
-        return (self.regions == region)[:, None] & (beyond != region)
-
 
 def triangulate(edges: EdgeList) -> Triangulation:
     """The constrained Delaunay triangulation of a valid arrangement within its frame."""

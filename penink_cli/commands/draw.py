@@ -15,7 +15,16 @@ from click.core import ParameterSource
 from penink_cli.commands.blast import warnings
 from penink_cli.commands.inputs import read_photo
 from penink_cli.errors import in_quotes
-from penink_cli.options import LENGTH, DeviceDpi, Finite, filter_options, processors, threads_option, verbose_option
+from penink_cli.options import (
+    LENGTH,
+    DeviceDpi,
+    Finite,
+    filter_options,
+    processors,
+    threads_option,
+    verbose_option,
+    warn,
+)
 from penink_cli.papers import check_sheet
 from penink_cli.streams import writing
 from penink_cli.texture_options import find_texture, texture_option
@@ -107,7 +116,7 @@ def draw(
             _write_illustration(output, Illustration(width, height, (layer,)))
             return
         for line in warnings(drawing.tone_curve(reduced, gamma), texture, pen, device_dpi):
-            click.echo(f"penink draw: warning: {line}", err=True)
+            warn(line)
         outlined = drawing.outlined(edges, width, height, choice) if choice else None
         grey = drawing.enlarged(reduced, edges, drawing.grey_size(width, rows / columns), threads)
         advance(1)

@@ -73,16 +73,6 @@ def test_regions_are_what_edges_enclose():
     assert c == d
 
 
-def test_the_sides_around_a_region():
-    mesh = triangulate(HOSTILE["closed square"])
-    inner = mesh.regions_of(np.array([(2.0, 2.0)]))[0]
-    sides = {
-        tuple(sorted((int(mesh.source[mesh.triangles[t, k]]), int(mesh.source[mesh.triangles[t, (k + 1) % 3]]))))
-        for t, k in np.argwhere(mesh.surrounding(inner))
-    }
-    assert sides == {(0, 1), (1, 2), (2, 3), (0, 3)}
-
-
 @pytest.mark.parametrize("name", ["through samples", "spiral", "star", "tiny", "closed square"])
 def test_walking_finds_the_triangle_from_anywhere(name):
     mesh = triangulate(HOSTILE[name])
