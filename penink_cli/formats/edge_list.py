@@ -96,7 +96,6 @@ def _plain(text: bytes) -> EdgeList | None:
         strength, at = _numbers(text, mark.end(), 1, False)
     if at < 0 or not _END.fullmatch(text, at):
         return None
-    vertices += 0.0  # -0 is 0
     return EdgeList(
         int(head[1]), int(head[2]), vertices.reshape(-1, 2), edges.astype(np.int64).reshape(-1, 2), strength
     )
@@ -104,11 +103,11 @@ def _plain(text: bytes) -> EdgeList | None:
 
 def _numbers(text: bytes, at: int, group: int, whole: bool) -> tuple[Floats, int]:
     """Numbers (n,) of the array that begins before ``at``, and the place after it, -1 where it is not plain."""
-    from penink_cli.formats import _number_rows
+    from penink_cli.formats import _plain_json
 
     end = text.find(b'"', at)  # of the next member, or none
     out = np.empty(1 + text.count(b",", at, end if end >= 0 else len(text)))
-    after, count = _number_rows.parse(text, at, group, whole, out)
+    after, count = _plain_json.numbers(text, at, group, whole, out)
     out.resize(count, refcheck=False)  # no copy
     return out, after
 

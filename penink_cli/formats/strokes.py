@@ -24,7 +24,7 @@ from typing import Any, BinaryIO, Protocol
 import numpy as np
 
 from penink_cli.errors import FormatError, LimitError, ParameterError
-from penink_cli.formats import _stroke_lines, strict_json
+from penink_cli.formats import _plain_json, _stroke_lines, strict_json
 from penink_cli.model import Strokes
 
 LIMIT = 1e7  # points; 3.5 km. Keeps thousandths exact and every format's integers within 32 bits
@@ -65,7 +65,7 @@ def _read(stream: BinaryIO) -> Strokes:
         block_counts = np.empty((len(text) - start) // 28 + 2, np.int64)
         block_widths = np.empty(len(block_counts))
         while start < len(text):
-            start, strokes, used = _stroke_lines.parse(text, start, LIMIT, block_points, block_counts, block_widths)
+            start, strokes, used = _plain_json.strokes(text, start, LIMIT, block_points, block_counts, block_widths)
             line_number += strokes
             total += used
             if total > MAX_POINTS:

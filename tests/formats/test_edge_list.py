@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from penink_cli.errors import FormatError, LimitError
-from penink_cli.formats import _number_rows, edge_list, strict_json
+from penink_cli.formats import _plain_json, edge_list, strict_json
 from penink_cli.model import EdgeList
 from tests.formats.readers import written
 
@@ -255,7 +255,7 @@ def test_every_way_to_write_a_number_is_the_number_that_json_reads(number, reade
 
 
 def test_the_compiled_build_is_the_one_under_test():
-    assert _number_rows.COMPILED
+    assert _plain_json.COMPILED
 
 
 def test_the_bytes_are_these():

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from penink_cli.errors import FormatError, ParameterError
-from penink_cli.formats import _stroke_lines, strokes
+from penink_cli.formats import _plain_json, _stroke_lines, strokes
 from penink_cli.model import Strokes
 
 HEADER = b'{"format": "penink-strokes", "version": 1, "width": 100, "height": 50}\n'
@@ -50,6 +50,7 @@ def read(text):
 
 def test_the_compiled_build_is_the_one_under_test():
     assert _stroke_lines.COMPILED
+    assert _plain_json.COMPILED
 
 
 @settings(deadline=None)
