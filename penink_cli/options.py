@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable
 from typing import Any, TypeVar
 
@@ -72,6 +73,14 @@ class Window(click.ParamType):
         return x, y, width, height
 
 
+def plain_number(value: Any) -> float:
+    """The number that ASCII digits say, NaN for what is none; Python's own ``1_0`` and ``١`` are typing errors."""
+    try:
+        return float(value) if re.fullmatch(r"[-+.0-9a-zA-Z]*", str(value)) else math.nan
+    except ValueError:
+        return math.nan
+
+
 class Finite(click.ParamType):
     """A finite number within bounds; ``above`` is exclusive, the others inclusive."""
 
@@ -82,10 +91,7 @@ class Finite(click.ParamType):
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
         """The number."""
-        try:
-            number = float(value)
-        except ValueError:
-            number = math.nan
+        number = plain_number(value)
         if not (math.isfinite(number) and self.least <= number <= self.most and number > self.above):
             low = f"above {self.above:g}" if self.above > -math.inf else f"from {self.least:g}"
             high = f" to {self.most:g}" if self.most < math.inf else ""

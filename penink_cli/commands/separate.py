@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import click
@@ -10,7 +9,7 @@ import click
 from penink_cli.commands.inputs import only_one_standard_input, read_edges, read_photo, warn_of_another_shape
 from penink_cli.commands.outline import Point
 from penink_cli.errors import in_quotes
-from penink_cli.options import edges_option, filter_options
+from penink_cli.options import edges_option, filter_options, plain_number
 from penink_cli.streams import writing
 
 
@@ -23,14 +22,10 @@ class Range(click.ParamType):
         """(low, high)."""
         if isinstance(value, tuple):
             return value
-        parts = value.split(",")
-        try:
-            low, high = map(float, parts)
-        except ValueError:
-            low = high = math.nan
-        if not 0 <= low < high <= 1:
+        greys = [plain_number(part) for part in value.split(",")]
+        if len(greys) != 2 or not 0 <= greys[0] < greys[1] <= 1:
             self.fail(f"{in_quotes(value)} is not a range of grey such as 0,0.5", param, ctx)
-        return low, high
+        return greys[0], greys[1]
 
 
 @click.command()
