@@ -20,20 +20,38 @@ COMPILED = cython.compiled
 
 LONGEST = cython.declare(cython.int, 50000)  # no longer stretch is moved: it would cost more than it brings
 CHAIN = cython.declare(cython.int, 3)
+LEAST = cython.declare(cython.double, 1e-7)  # what a step must gain
+
+
+# What the steps below share. Ends are numbered 2s and 2s + 1; `last` is the first end of the stroke that closes the tour.
+Tour = cython.struct(
+    points=cython.p_const_double,
+    near=cython.p_const_int,
+    neighbours=cython.int,
+    n=cython.int,
+    last=cython.int,
+    order=cython.p_int,
+    place=cython.p_int,
+    flips=cython.p_uchar,
+    queue=cython.p_int,
+    waiting=cython.p_uchar,
+    tail=cython.int,
+    budget=cython.longlong,
+)
 
 
 @cython.cfunc
 @cython.nogil
 @cython.inline
 @cython.exceptval(check=False)
-def _d(points: cython.p_const_double, last: cython.int, a: cython.int, b: cython.int) -> cython.double:
+def _d(t: cython.pointer(Tour), a: cython.int, b: cython.int) -> cython.double:
     """Distance between two ends; none where either belongs to the stroke that closes the tour."""
     x: cython.double
     y: cython.double
-    if a >= last or b >= last:
+    if a >= t.last or b >= t.last:
         return 0.0
-    x = points[2 * a] - points[2 * b]
-    y = points[2 * a + 1] - points[2 * b + 1]
+    x = t.points[2 * a] - t.points[2 * b]
+    y = t.points[2 * a + 1] - t.points[2 * b + 1]
     return sqrt(x * x + y * y)
 
 
@@ -41,11 +59,32 @@ def _d(points: cython.p_const_double, last: cython.int, a: cython.int, b: cython
 @cython.nogil
 @cython.inline
 @cython.exceptval(check=False)
-def _either(points: cython.p_const_double, c: cython.int, wanted: cython.int) -> cython.int:
-    """The end wanted, if that is the candidate or, the stroke being a dot, as good as it; else -1."""
-    if c == wanted or (points[2 * c] == points[2 * wanted] and points[2 * c + 1] == points[2 * wanted + 1]):
-        return wanted
-    return -1
+def _beside(t: cython.pointer(Tour), s: cython.int, ahead: cython.bint) -> cython.int:
+    """The stroke behind s in the tour, if `ahead`, or the one before it."""
+    i: cython.int = t.place[s]
+    if ahead:
+        return t.order[i + 1 if i + 1 < t.n else 0]
+    return t.order[i - 1 if i > 0 else t.n - 1]
+
+
+@cython.cfunc
+@cython.nogil
+@cython.inline
+@cython.exceptval(check=False)
+def _end(t: cython.pointer(Tour), s: cython.int, ahead: cython.bint) -> cython.int:
+    """The end by which s is linked to the stroke behind it, if `ahead`, or to the one before it."""
+    return 2 * s + (t.flips[s] ^ ahead)
+
+
+@cython.cfunc
+@cython.nogil
+@cython.inline
+@cython.exceptval(check=False)
+def _as_good(t: cython.pointer(Tour), c: cython.int, wanted: cython.int) -> cython.bint:
+    """Whether candidate c is the end wanted or, the stroke being a dot, as good as it."""
+    return c == wanted or (
+        t.points[2 * c] == t.points[2 * wanted] and t.points[2 * c + 1] == t.points[2 * wanted + 1]
+    )
 
 
 @cython.cfunc
@@ -148,14 +187,141 @@ def _move(
 @cython.nogil
 @cython.inline
 @cython.exceptval(check=False)
-def _push(
-    queue: cython.p_int, waiting: cython.p_uchar, size: cython.int, tail: cython.p_int, stroke: cython.int
-) -> cython.int:
-    if not waiting[stroke]:
-        waiting[stroke] = 1
-        queue[tail[0]] = stroke
-        tail[0] = tail[0] + 1 if tail[0] + 1 < size else 0
-    return 0
+def _push(t: cython.pointer(Tour), s: cython.int) -> cython.void:
+    """Look at s again, last of all."""
+    if not t.waiting[s]:
+        t.waiting[s] = 1
+        t.queue[t.tail] = s
+        t.tail = t.tail + 1 if t.tail + 1 < t.n else 0
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def _two_opt(t: cython.pointer(Tour), s: cython.int, ahead: cython.bint) -> cython.bint:
+    """Replace the link of s to the stroke behind it (or before it) and one more link, if that is shorter."""
+    a: cython.int = _end(t, s, ahead)
+    other: cython.int = _beside(t, s, ahead)
+    e: cython.int = _end(t, other, not ahead)
+    reach: cython.double = _d(t, a, e)
+    gain: cython.double
+    c: cython.int
+    i: cython.int
+    k: cython.int
+    goal: cython.int
+    after: cython.int
+    steps: cython.int
+    for k in range(t.neighbours):
+        c = t.near[a * t.neighbours + k]
+        t.budget -= 1
+        if c < 0:
+            break
+        gain = reach - _d(t, a, c)
+        if gain <= LEAST:
+            break
+        goal = c // 2
+        if not _as_good(t, c, _end(t, goal, ahead)):
+            continue
+        c = _end(t, goal, ahead)
+        after = _beside(t, goal, ahead)
+        i = _end(t, after, not ahead)
+        gain += _d(t, c, i) - _d(t, e, i)
+        if gain <= LEAST:
+            continue
+        if ahead:
+            steps = _reverse(t.order, t.place, t.flips, t.n, t.place[other], t.place[goal])
+        else:
+            steps = _reverse(t.order, t.place, t.flips, t.n, t.place[s], t.place[after])
+        if steps < 0:
+            continue
+        t.budget -= steps
+        _push(t, other)
+        _push(t, goal)
+        _push(t, after)
+        return True
+    return False
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def _or_opt(t: cython.pointer(Tour), s: cython.int, e: cython.int, length: cython.int) -> cython.bint:
+    """Move the chain of `length` strokes from s to e between two others, either way round, if that is shorter."""
+    before: cython.int = _beside(t, s, False)
+    after: cython.int = _beside(t, e, True)
+    saved: cython.double = _d(t, _end(t, before, True), _end(t, s, False))
+    gain: cython.double
+    a: cython.int
+    c: cython.int
+    i: cython.int
+    k: cython.int
+    goal: cython.int
+    other: cython.int
+    facing: cython.int
+    far: cython.int
+    steps: cython.int
+    by_end: cython.int
+    ahead: cython.bint
+    saved += _d(t, _end(t, e, True), _end(t, after, False))
+    saved -= _d(t, _end(t, before, True), _end(t, after, False))
+    if saved <= LEAST:
+        return False
+    for by_end in range(2):  # by the neighbours of the chain's beginning, then of its end
+        a = _end(t, e, True) if by_end else _end(t, s, False)
+        far = _end(t, s, False) if by_end else _end(t, e, True)
+        for k in range(t.neighbours):
+            c = t.near[a * t.neighbours + k]
+            t.budget -= 1
+            if c < 0:
+                break
+            gain = saved - _d(t, a, c)
+            if gain <= LEAST:
+                break
+            goal = c // 2
+            i = t.place[goal] - t.place[s]
+            if i < 0:
+                i += t.n
+            if i < length:  # one of the chain's own
+                continue
+            ahead = c == _end(t, goal, True)  # in behind `goal`, else before it
+            other = _beside(t, goal, ahead)
+            if other == (s if ahead else e):
+                continue
+            facing = _end(t, other, not ahead)
+            gain += _d(t, c, facing) - _d(t, far, facing)
+            if gain <= LEAST:
+                continue
+            i = t.place[goal] if ahead else t.place[other]
+            steps = _move(t.order, t.place, t.flips, t.n, t.place[s], length, i, (by_end == 1) == ahead)
+            if steps < 0:
+                continue
+            t.budget -= steps
+            _push(t, before)
+            _push(t, after)
+            _push(t, goal)
+            _push(t, other)
+            _push(t, e)
+            return True
+    return False
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def _better(t: cython.pointer(Tour), s: cython.int) -> cython.bint:
+    """Take the first step at stroke s that shortens the tour; False where there is none."""
+    e: cython.int = s
+    length: cython.int
+    if _two_opt(t, s, True) or _two_opt(t, s, False):
+        return True
+    for length in range(1, CHAIN + 1):
+        if length > 1:
+            e = _beside(t, e, True)
+        if e == t.n - 1 or t.n < length + 3:
+            return False
+        if _or_opt(t, s, e, length):
+            return True
+    return False
 
 
 def improve(
@@ -178,166 +344,27 @@ def improve(
     tour, place, flips (n + 1,): with stroke n closing it. queue, waiting (n + 1,): the strokes to look at, in the order
     of the tour at first, and 1 for each that is in the queue. state (3,): the queue's head and tail, strokes looked at.
     """
-    n: cython.int = tour.shape[0]
-    last: cython.int = 2 * (n - 1)
-    k_most: cython.int = near.shape[1]
-    p: cython.p_const_double = cython.address(points[0, 0])
-    t: cython.p_int = cython.address(tour[0])
-    at: cython.p_int = cython.address(place[0])
-    f: cython.p_uchar = cython.address(flips[0])
-    q: cython.p_int = cython.address(queue[0])
-    w: cython.p_uchar = cython.address(waiting[0])
+    t: Tour
     head: cython.int = cython.cast(cython.int, state[0])
-    tail: cython.int = cython.cast(cython.int, state[1])
     looked: cython.longlong = state[2]
-    i: cython.int
     s: cython.int
-    e: cython.int
-    before: cython.int
-    after: cython.int
-    other: cython.int
-    beside: cython.int
-    a: cython.int
-    c: cython.int
-    k: cython.int
-    way: cython.int
-    length: cython.int
-    steps: cython.int
-    gain: cython.double
-    reach: cython.double
-    saved: cython.double
-    eps: cython.double = 1e-7
-    better: cython.bint
-    inside: cython.bint
-    goal: cython.int
-    backwards: cython.bint
-    if n < 4:
+    if tour.shape[0] < 4:
         return budget
+    t.points, t.near, t.neighbours = cython.address(points[0, 0]), cython.address(near[0, 0]), near.shape[1]
+    t.n, t.last = tour.shape[0], 2 * (tour.shape[0] - 1)
+    t.order, t.place, t.flips = cython.address(tour[0]), cython.address(place[0]), cython.address(flips[0])
+    t.queue, t.waiting = cython.address(queue[0]), cython.address(waiting[0])
+    t.tail = cython.cast(cython.int, state[1])
+    t.budget = budget
     with cython.nogil:
-        while w[q[head]] and budget > stop:
+        while t.waiting[t.queue[head]] and t.budget > stop:
             looked += 1
-            s = q[head]
-            w[s] = 0
-            head = head + 1 if head + 1 < n else 0
-            if s == n - 1:
+            s = t.queue[head]
+            t.waiting[s] = 0
+            head = head + 1 if head + 1 < t.n else 0
+            if s == t.n - 1:
                 continue
-            better = True
-            while better and budget > 0:
-                better = False
-                # 2-opt, at the link behind s (way 0) and before it (way 1)
-                for way in range(2):
-                    if way == 0:
-                        a = 2 * s + 1 - f[s]
-                        other = t[at[s] + 1 if at[s] + 1 < n else 0]
-                        e = 2 * other + f[other]
-                    else:
-                        a = 2 * s + f[s]
-                        other = t[at[s] - 1 if at[s] > 0 else n - 1]
-                        e = 2 * other + 1 - f[other]
-                    reach = _d(p, last, a, e)
-                    for k in range(k_most):
-                        c = near[a, k]
-                        budget -= 1
-                        if c < 0:
-                            break
-                        gain = reach - _d(p, last, a, c)
-                        if gain <= eps:
-                            break
-                        beside = c // 2
-                        if way == 0:
-                            c = _either(p, c, 2 * beside + 1 - f[beside])
-                            if c < 0:
-                                continue
-                            after = t[at[beside] + 1 if at[beside] + 1 < n else 0]
-                            i = 2 * after + f[after]
-                        else:
-                            c = _either(p, c, 2 * beside + f[beside])
-                            if c < 0:
-                                continue
-                            after = t[at[beside] - 1 if at[beside] > 0 else n - 1]
-                            i = 2 * after + 1 - f[after]
-                        gain += _d(p, last, c, i) - _d(p, last, e, i)
-                        if gain <= eps:
-                            continue
-                        if way == 0:
-                            steps = _reverse(t, at, f, n, at[other], at[beside])
-                        else:
-                            steps = _reverse(t, at, f, n, at[s], at[after])
-                        if steps < 0:
-                            continue
-                        budget -= steps
-                        _push(q, w, n, cython.address(tail), other)
-                        _push(q, w, n, cython.address(tail), beside)
-                        _push(q, w, n, cython.address(tail), after)
-                        better = True
-                        break
-                    if better:
-                        break
-                if better:
-                    continue
-                # Or-opt: the chain from s to e, `length` strokes, elsewhere
-                e = s
-                for length in range(1, CHAIN + 1):
-                    if length > 1:
-                        e = t[at[e] + 1 if at[e] + 1 < n else 0]
-                    if e == n - 1 or n < length + 3:
-                        break
-                    before = t[at[s] - 1 if at[s] > 0 else n - 1]
-                    after = t[at[e] + 1 if at[e] + 1 < n else 0]
-                    saved = _d(p, last, 2 * before + 1 - f[before], 2 * s + f[s])
-                    saved += _d(p, last, 2 * e + 1 - f[e], 2 * after + f[after])
-                    saved -= _d(p, last, 2 * before + 1 - f[before], 2 * after + f[after])
-                    if saved <= eps:
-                        continue
-                    for way in range(2):  # by the neighbours of the chain's beginning, then of its end
-                        a = 2 * s + f[s] if way == 0 else 2 * e + 1 - f[e]
-                        goal = 2 * e + 1 - f[e] if way == 0 else 2 * s + f[s]
-                        for k in range(k_most):
-                            c = near[a, k]
-                            budget -= 1
-                            if c < 0:
-                                break
-                            gain = saved - _d(p, last, a, c)
-                            if gain <= eps:
-                                break
-                            beside = c // 2
-                            i = at[beside] - at[s]
-                            if i < 0:
-                                i += n
-                            inside = i < length
-                            if inside:
-                                continue
-                            if c == 2 * beside + 1 - f[beside]:  # behind `beside`, before `other`
-                                other = t[at[beside] + 1 if at[beside] + 1 < n else 0]
-                                if other == s:
-                                    continue
-                                gain += _d(p, last, c, 2 * other + f[other]) - _d(p, last, goal, 2 * other + f[other])
-                                backwards = way == 1
-                                i = at[beside]
-                            else:  # before `beside`, behind `other`
-                                other = t[at[beside] - 1 if at[beside] > 0 else n - 1]
-                                if other == e:
-                                    continue
-                                gain += _d(p, last, c, 2 * other + 1 - f[other])
-                                gain -= _d(p, last, goal, 2 * other + 1 - f[other])
-                                backwards = way == 0
-                                i = at[other]
-                            if gain <= eps:
-                                continue
-                            steps = _move(t, at, f, n, at[s], length, i, backwards)
-                            if steps < 0:
-                                continue
-                            budget -= steps
-                            _push(q, w, n, cython.address(tail), before)
-                            _push(q, w, n, cython.address(tail), after)
-                            _push(q, w, n, cython.address(tail), beside)
-                            _push(q, w, n, cython.address(tail), other)
-                            _push(q, w, n, cython.address(tail), e)
-                            better = True
-                            break
-                        if better:
-                            break
-                    if better:
-                        break
-    state[0], state[1], state[2] = head, tail, looked
-    return budget
+            while t.budget > 0 and _better(cython.address(t), s):
+                pass
+    state[0], state[1], state[2] = head, t.tail, looked
+    return t.budget
