@@ -23,7 +23,7 @@ CHAIN = cython.declare(cython.int, 3)
 LEAST = cython.declare(cython.double, 1e-7)  # what a step must gain
 
 
-# What the steps below share. The ends of stroke s are 2s and 2s + 1; `last`, and on, are of the one that closes the tour.
+# What the steps below share. The ends of stroke s are 2s and 2s + 1; `last` is the first of the one closing the tour.
 Tour = cython.struct(
     points=cython.p_const_double,
     near=cython.p_const_int,
