@@ -41,16 +41,6 @@ class Planar:
     ends: (m, 2) int32 vertex numbers of each segment; a segment is live between `add` and `remove`.
     """
 
-    vertices = cython.declare(cython.longlong[:, ::1], visibility="readonly")
-    ends = cython.declare(cython.int[:, ::1], visibility="readonly")
-    live = cython.declare(cython.uchar[::1], visibility="readonly")
-    _head: cython.int[:, ::1]
-    _entry: cython.int[:, ::1]
-    _ignored: cython.int[::1]
-    _stamp: cython.int
-    _free: cython.int
-    _cell: cython.longlong
-
     def __init__(
         self,
         vertices: cython.longlong[:, ::1],
@@ -239,6 +229,77 @@ class Planar:
                         continue
                     return False
         return True
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def within(
+        self,
+        left: cython.double,
+        top: cython.double,
+        right: cython.double,
+        bottom: cython.double,
+        found: cython.p_int,
+        most: cython.int,
+    ) -> cython.int:
+        """List the live segments, in order, that go through a rectangle (units): how many; most + 1 where more do."""
+        count: cython.int = 0
+        row: cython.int
+        column: cython.int
+        entry: cython.int
+        place: cython.int
+        k: cython.int
+        s: cython.int
+        first_row: cython.int = max(0, cython.cast(cython.int, floor(top / self._cell)))
+        last_row: cython.int = min(self._head.shape[0] - 1, cython.cast(cython.int, floor(bottom / self._cell)))
+        first_column: cython.int = max(0, cython.cast(cython.int, floor(left / self._cell)))
+        last_column: cython.int = min(self._head.shape[1] - 1, cython.cast(cython.int, floor(right / self._cell)))
+        for row in range(first_row, last_row + 1):
+            for column in range(first_column, last_column + 1):
+                entry = self._head[row, column]
+                while entry >= 0:
+                    s = self._entry[entry, 0]
+                    entry = self._entry[entry, 1]
+                    if not self._through(s, left, top, right, bottom):
+                        continue
+                    place = count
+                    while place > 0 and found[place - 1] > s:
+                        place -= 1
+                    if place > 0 and found[place - 1] == s:
+                        continue
+                    if count == most:
+                        return most + 1
+                    for k in range(count, place, -1):
+                        found[k] = found[k - 1]
+                    found[place] = s
+                    count += 1
+        return count
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def _through(
+        self,
+        s: cython.int,
+        left: cython.double,
+        top: cython.double,
+        right: cython.double,
+        bottom: cython.double,
+    ) -> cython.bint:
+        """Whether a segment goes through a rectangle."""
+        ax: cython.double = self.vertices[self.ends[s, 0], 0]
+        ay: cython.double = self.vertices[self.ends[s, 0], 1]
+        bx: cython.double = self.vertices[self.ends[s, 1], 0]
+        by: cython.double = self.vertices[self.ends[s, 1], 1]
+        dx: cython.double = bx - ax
+        dy: cython.double = by - ay
+        least: cython.double
+        most: cython.double
+        if max(ax, bx) < left or min(ax, bx) > right or max(ay, by) < top or min(ay, by) > bottom:
+            return False
+        least = min(dx * (top - ay), dx * (bottom - ay)) - max(dy * (left - ax), dy * (right - ax))
+        most = max(dx * (top - ay), dx * (bottom - ay)) - min(dy * (left - ax), dy * (right - ax))
+        return least <= 0 <= most
 
 
 def insert(planar: Planar, ends: cython.int[:, ::1]) -> None:

@@ -17,6 +17,7 @@ Ints32 = npt.NDArray[np.int32]
 
 _TRIM = 1.2  # of the blur: farther from a junction the other edge does not bend an end noticeably
 
+
 @dataclass(frozen=True, eq=False)
 class Ends:
     """The loose ends of chains, and what each would meet if it went on straight.
@@ -51,9 +52,7 @@ class Ends:
         return (self.target >= 0) & ~self.to_frame
 
 
-def loose_ends(
-    points: EdgePoints, chains: Chains, blur: float, hosts: npt.NDArray[np.bool_] | None = None
-) -> Ends:
+def loose_ends(points: EdgePoints, chains: Chains, blur: float, hosts: npt.NDArray[np.bool_] | None = None) -> Ends:
     """Look ahead from each end of an open chain.
 
     Args:

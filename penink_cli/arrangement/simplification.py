@@ -77,6 +77,4 @@ def simplify(planar: Planar, tolerance: float, width: int, height: int) -> None:
     movable = np.flatnonzero((degree > 1) & inner).astype(np.int32)
     furthest = tolerance / UNIT
     right, bottom = limit.tolist()
-    _planar.settle(
-        planar, movable, around_first, around, run_first, run_last, places, furthest, right, bottom, _SWEEPS
-    )
+    _planar.settle(planar, movable, around_first, around, run_first, run_last, places, furthest, right, bottom, _SWEEPS)

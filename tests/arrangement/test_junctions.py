@@ -4,18 +4,18 @@ import numpy as np
 import pytest
 from scipy.ndimage import gaussian_filter, label
 
-from penink_cli.arrangement import _window
+from penink_cli.arrangement import _exchange, _place, _regions, _settling, _window
+from penink_cli.arrangement._place import Place
 from penink_cli.arrangement.detection import detect_edges
 from penink_cli.arrangement.junctions import _taps
-from penink_cli.arrangement.places import Place
 from tests.benchmarks._scenes import Scene, polygon
 from tests.benchmarks.edges import along
 
-FINE = _window.FINE
+FINE = _regions.FINENESS
 
 
-def test_the_compiled_kernel_is_under_test():
-    assert _window.COMPILED
+def test_the_compiled_kernels_are_under_test():
+    assert all(kernel.COMPILED for kernel in (_exchange, _place, _regions, _settling, _window))
 
 
 def seen_by(tip, blur, size=20, grey=(0.3, 0.7)):
@@ -30,10 +30,10 @@ def seen_by(tip, blur, size=20, grey=(0.3, 0.7)):
     return photo, vertices, np.array([(0, 1), (0, 2)], np.int32)
 
 
-def window(photo, blur):
-    found = _window.Window(photo, _taps(blur), float(np.hypot(blur, np.sqrt(1 / 12))))
-    assert found.place(0, 0, 20, 20, 3) == 400  # all of a photo is compared
-    return found
+def left_over(photo, place, blur, rounds, held=()):
+    """What the window of all of the photo leaves unexplained, vertices settled."""
+    window = _window.Window(photo, _taps(blur), float(np.hypot(blur, np.sqrt(1 / 12))))
+    return window.fitted(place, (0, 0, 20, 20), 3, rounds, held)
 
 
 def slow_left_over(photo, vertices, ends, blur):
@@ -61,49 +61,31 @@ def slow_left_over(photo, vertices, ends, blur):
 def test_a_window_is_rendered_as_regions_seen_through_the_camera(blur, off):
     photo, vertices, ends = seen_by((8.3, 9.6), blur)
     vertices = vertices + off
-    none = np.full(3, -1, np.int32)
-    found = window(photo, blur).settle(ends, vertices.copy(), none, 0, np.zeros((0, 6)), 0)
+    found = left_over(photo, Place(vertices, ends), blur, 0)
     assert found == pytest.approx(slow_left_over(photo, vertices, ends, blur), rel=1e-2, abs=1e-5)
 
 
 @pytest.mark.parametrize("off", [(0.7, 0.2), (-0.6, -0.8), (2.0, 0.0)])
 def test_a_tip_settles_where_it_is(off):
     photo, vertices, ends = seen_by((8.3, 9.6), 0.8)
-    moved = vertices.copy()
-    moved[0] += off
-    left = window(photo, 0.8).settle(ends, moved, np.array([0, -1, -1], np.int32), 1, np.zeros((1, 6)), 12)
-    assert np.hypot(*(moved[0] - vertices[0])) < 0.15
+    place = Place(vertices + np.array([off, (0, 0), (0, 0)]), ends, {0})
+    left = left_over(photo, place, 0.8, 12)
+    assert np.hypot(*(place.at()[0] - vertices[0])) < 0.15
     assert left < 0.01
 
 
 def test_what_is_known_holds_a_vertex():
     photo, vertices, ends = seen_by((8.3, 9.6), 0.8)
-    moved = vertices.copy()
-    moved[0] += (0.7, 0.2)
-    x, y = moved[0]
-    held = 1e6 * np.array([[1.0, 0.0, 1.0, x, y, x * x + y * y]])
-    start = moved.copy()
-    window(photo, 0.8).settle(ends, moved, np.array([0, -1, -1], np.int32), 1, held, 12)
-    assert np.abs(moved - start).max() < 1e-3
+    place = Place(vertices + np.array([(0.7, 0.2), (0, 0), (0, 0)]), ends, {0})
+    x, y = place.at()[0]
+    left_over(photo, place, 0.8, 12, (1e6 * np.array([1.0, 0.0, 1.0, x, y, x * x + y * y]),))
+    assert np.abs(place.at()[0] - (x, y)).max() < 1e-3
 
 
 def test_too_many_regions_are_refused():
     photo, _, _ = seen_by((8.3, 9.6), 0.8)
-    vertices = np.array([(x, y) for x in range(1, 15) for y in (0.0, 20.0)])
-    ends = np.arange(28, dtype=np.int32).reshape(-1, 2)
-    none = np.full(28, -1, np.int32)
-    assert window(photo, 0.8).settle(ends, vertices, none, 0, np.zeros((0, 6)), 0) < 0
-
-
-def test_a_bevel_may_be_a_corner_and_an_open_end_may_meet_an_edge():
-    place = Place({0: (0, 0), 1: (9, 0), 2: (10, 1), 3: (10, 9)}, [(0, 1, 0), (1, 2, 1), (2, 3, 2)], frozenset({1, 2}))
-    corners = [other.at[1] for other in place.changes(4) if len(other.edges) == 2]
-    assert (10.0, 0.0) in corners
-    bar = Place({0: (0, 0), 1: (9, 0), 2: (5, 1), 3: (5, 9)}, [(0, 1, 0), (2, 3, 1)], frozenset({2}))
-    (tee,) = list(bar.changes(4))
-    assert tee.at[2] == (5.0, 0.0) and {frozenset(e[:2]) for e in tee.edges} == {
-        frozenset(e) for e in ((2, 3), (0, 2), (2, 1))
-    }
+    lines = [(x, y) for x in range(1, 15) for y in (0.0, 20.0)]
+    assert left_over(photo, Place(lines, np.arange(28).reshape(-1, 2)), 0.8, 0) < 0
 
 
 @pytest.mark.parametrize(("blur", "noise"), [(0.5, 0), (1.0, 2), (1.5, 2)])

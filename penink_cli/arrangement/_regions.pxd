@@ -1,0 +1,27 @@
+cimport cython
+
+from penink_cli.arrangement._place cimport Place
+
+cdef enum:
+    FINE = 3
+    MOST_SIDE = 26
+    MOST_POINTS = 78
+    MOST_REGIONS = 12
+    MOST_MOVED = 8
+    MOST_UNKNOWN = 30
+
+cdef class Regions:
+    cdef double[::1] taps, sums
+    cdef int top, left, rows, columns
+    cdef int first_row, last_row, first_column, last_column
+    cdef unsigned char[:, ::1] walls
+    cdef int[:, ::1] label
+    cdef int[::1] begin, end, start, parent, region
+    cdef double[::1] total
+    cdef double[:, :, ::1] across
+    cdef double[:, :, ::1] design
+    cdef int regions
+    cdef void block(self, Place place) noexcept nogil
+    cdef bint part(self, Place place) noexcept nogil
+    cdef void see(self) noexcept nogil
+    cdef int region_at(self, double x, double y) noexcept nogil

@@ -1,0 +1,196 @@
+# cython: language_level=3, boundscheck=False, wraparound=False, cdivision=True
+"""Compiled: the regions that a few edges part a window into, and what the camera's pixels see of each.
+
+Sides are told apart at `FINE` points a pixel along each axis.
+"""
+
+import cython
+import numpy as np
+from cython.cimports.libc.math import ceil
+from cython.cimports.penink_cli.arrangement._place import Place
+
+COMPILED = cython.compiled
+
+SIDE, FINENESS = MOST_SIDE, FINE  # of the widest window, pixels; points a pixel
+
+
+@cython.cclass
+class Regions:
+    """A window of a picture, parted.
+
+    taps, sums: (2 r + 1,) what each point gives to a pixel along one axis: the camera's blur over the pixel's width;
+    the same summed up. top, left, rows, columns: the window, in pixels; first_row … last_column: those of its pixels
+    that are compared with the photo, counted in the window.
+    walls: of each point, whether an edge passes on its right (1) or below (2). label: its run, which is a stretch
+    of a row between two walls. begin, end: runs of each row. start, parent, region: first column of each run, a
+    run that it is one with, its region. across: what pixels see of each region within a row of points.
+    design: what each pixel sees of each region, then two slopes; then room for what moves of vertices would change.
+    """
+
+    def __init__(self, taps: cython.double[::1]):
+        self.taps = taps
+        self.sums = np.concatenate([[0.0], np.cumsum(taps)])
+        self.walls = np.zeros((MOST_POINTS, MOST_POINTS), np.uint8)
+        self.label = np.zeros((MOST_POINTS, MOST_POINTS), np.int32)
+        self.begin, self.end = np.zeros(MOST_POINTS, np.int32), np.zeros(MOST_POINTS, np.int32)
+        self.start = np.zeros(MOST_POINTS * MOST_POINTS + 2, np.int32)
+        self.parent, self.region = np.copy(self.start), np.copy(self.start)
+        self.total = np.zeros(MOST_SIDE, np.float64)
+        self.across = np.zeros((MOST_POINTS, MOST_REGIONS, MOST_SIDE), np.float64)
+        self.design = np.zeros((MOST_SIDE, MOST_SIDE, MOST_UNKNOWN), np.float64)
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def block(self, place: Place) -> cython.void:
+        """Mark the steps to the right (1) and down (2) between points that cross an edge."""
+        high: cython.int = self.rows * FINE
+        wide: cython.int = self.columns * FINE
+        e: cython.int
+        i: cython.int
+        j: cython.int
+        x0: cython.double
+        y0: cython.double
+        x1: cython.double
+        y1: cython.double
+        at: cython.double
+        for i in range(high):
+            for j in range(wide):
+                self.walls[i, j] = 0
+        for e in range(place.edges):
+            x0 = (place.x[place.a[e]] - self.left) * FINE - 0.5
+            y0 = (place.y[place.a[e]] - self.top) * FINE - 0.5
+            x1 = (place.x[place.b[e]] - self.left) * FINE - 0.5
+            y1 = (place.y[place.b[e]] - self.top) * FINE - 0.5
+            if y0 > y1:
+                x0, y0, x1, y1 = x1, y1, x0, y0
+            if y1 < 0 or y0 >= high or max(x0, x1) < 0 or min(x0, x1) >= wide:
+                continue
+            i = cython.cast(cython.int, ceil(max(0.0, y0)))
+            while i < high and i < y1:
+                at = x0 + (i - y0) * ((x1 - x0) / (y1 - y0))
+                if 0 < at < wide:
+                    j = cython.cast(cython.int, ceil(at)) - 1
+                    self.walls[i, j] |= 1
+                i += 1
+            if x0 > x1:
+                x0, y0, x1, y1 = x1, y1, x0, y0
+            j = cython.cast(cython.int, ceil(max(0.0, x0)))
+            while j < wide and j < x1:
+                at = y0 + (j - x0) * ((y1 - y0) / (x1 - x0))
+                if 0 < at < high:
+                    i = cython.cast(cython.int, ceil(at)) - 1
+                    self.walls[i, j] |= 2
+                j += 1
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def part(self, place: Place) -> cython.bint:
+        """Number the regions that edges part; False where there are too many.
+
+        Points between two walls of a row are a run; runs below one another without a wall between are one region.
+        """
+        high: cython.int = self.rows * FINE
+        wide: cython.int = self.columns * FINE
+        i: cython.int
+        j: cython.int
+        a: cython.int
+        b: cython.int
+        run: cython.int = 0
+        above: cython.int
+        for i in range(high):
+            self.begin[i] = run
+            self.start[run] = 0
+            self.parent[run] = run
+            above = -1
+            for j in range(wide):
+                if j and self.walls[i, j - 1] & 1:
+                    run += 1
+                    self.start[run] = j
+                    self.parent[run] = run
+                    above = -1
+                self.label[i, j] = run
+                if i and self.walls[i - 1, j] & 2 == 0 and self.label[i - 1, j] != above:
+                    above = self.label[i - 1, j]
+                    a = above
+                    while self.parent[a] != a:
+                        a = self.parent[a]
+                    b = run
+                    while self.parent[b] != b:
+                        b = self.parent[b]
+                    self.parent[max(a, b)] = min(a, b)
+            run += 1
+            self.start[run] = wide  # of the row above: overwritten by the next one's first run
+            self.end[i] = run
+        self.regions = 0
+        for a in range(run):  # a run's parent comes before it
+            if self.parent[a] == a:
+                if self.regions == MOST_REGIONS:
+                    return False
+                self.region[a] = self.regions
+                self.regions += 1
+            else:
+                self.region[a] = self.region[self.parent[a]]
+        return True
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def see(self) -> cython.void:
+        """How much of each region each compared pixel sees: the first columns of the design; then the two slopes."""
+        reach: cython.int = cython.cast(cython.int, self.taps.shape[0] // 2)
+        high: cython.int = self.rows * FINE
+        wide: cython.int = self.columns * FINE
+        regions: cython.int = self.regions
+        i: cython.int
+        j: cython.int
+        k: cython.int
+        d: cython.int
+        at: cython.int
+        run: cython.int
+        first: cython.int
+        last: cython.int
+        weight: cython.double
+        total: cython.p_double
+        row: cython.p_double
+        for i in range(high):
+            for k in range(regions):
+                for j in range(self.first_column, self.last_column):
+                    self.across[i, k, j] = 0.0
+            for run in range(self.begin[i], self.end[i]):
+                # The row goes on beyond the window as it ends.
+                first = self.start[run] if run > self.begin[i] else -MOST_POINTS
+                last = self.start[run + 1] if run + 1 < self.end[i] else wide + MOST_POINTS
+                k = self.region[run]
+                for j in range(
+                    max(self.first_column, (first - reach) // FINE - 1 if first > 0 else 0),
+                    min(self.last_column, (last + reach) // FINE + 2),
+                ):
+                    at = FINE * j + FINE // 2 - reach  # the first tap
+                    self.across[i, k, j] += self.sums[min(2 * reach + 1, max(0, last - at))]
+                    self.across[i, k, j] -= self.sums[min(2 * reach + 1, max(0, first - at))]
+        for i in range(self.first_row, self.last_row):
+            for k in range(regions):
+                total = cython.address(self.total[0])
+                for j in range(self.first_column, self.last_column):
+                    total[j] = 0.0
+                for d in range(-reach, reach + 1):
+                    row = cython.address(self.across[min(high - 1, max(0, FINE * i + FINE // 2 + d)), k, 0])
+                    weight = self.taps[d + reach]
+                    for j in range(self.first_column, self.last_column):
+                        total[j] += weight * row[j]
+                for j in range(self.first_column, self.last_column):
+                    self.design[i, j, k] = total[j]
+            for j in range(self.first_column, self.last_column):
+                self.design[i, j, regions] = 0.1 * (i - 0.5 * self.rows)
+                self.design[i, j, regions + 1] = 0.1 * (j - 0.5 * self.columns)
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def region_at(self, x: cython.double, y: cython.double) -> cython.int:
+        """The region at a place in the window (pixels)."""
+        i: cython.int = min(self.rows * FINE - 1, max(0, cython.cast(cython.int, y * FINE)))
+        j: cython.int = min(self.columns * FINE - 1, max(0, cython.cast(cython.int, x * FINE)))
+        return self.region[self.label[i, j]]

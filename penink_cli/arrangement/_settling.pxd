@@ -1,0 +1,26 @@
+cimport cython
+
+from penink_cli.arrangement._place cimport Place
+from penink_cli.arrangement._planar cimport Planar
+from penink_cli.arrangement._window cimport Window
+
+@cython.final
+cdef class Settler(Window):
+    cdef double near, floor, unit, score
+    cdef int halo, pixels
+    cdef Place given, best, chosen, other, trial
+    cdef int[15] segments
+    cdef double[15][4] lines
+    cdef bint view(self, Planar planar, int[::1] site) noexcept nogil
+    cdef int vertex_of(self, Planar planar, int name) noexcept nogil
+    cdef void know(self, Planar planar, double[::1] step) noexcept nogil
+    cdef bint hold(self, Place place) noexcept nogil
+    cdef double settled(self, Place place, int rounds) noexcept nogil
+    cdef bint search(self) noexcept nogil
+    cdef void consider(self, int rounds) noexcept nogil
+    cdef void merge(self) noexcept nogil
+    cdef void join(self) noexcept nogil
+    cdef void bend(self) noexcept nogil
+    cdef bint within(self, int e) noexcept nogil
+    cdef void shrink(self, int a, int b) noexcept nogil
+    cdef void meet(self, int v, int e) noexcept nogil

@@ -1,0 +1,414 @@
+# cython: language_level=3, boundscheck=False, wraparound=False, cdivision=True
+"""Compiled: one corner or junction after the other changed until it explains the photo best. See junctions.py."""
+
+import cython
+from cython.cimports.libc.math import INFINITY, ceil, floor, fmax, fmin, log
+from cython.cimports.penink_cli.arrangement._place import MOST_EDGES, NEW, Place
+from cython.cimports.penink_cli.arrangement._planar import Planar
+from cython.cimports.penink_cli.arrangement._regions import MOST_MOVED, MOST_SIDE
+from cython.cimports.penink_cli.arrangement._window import Window
+
+COMPILED = cython.compiled
+
+_AROUND = cython.declare(cython.int, 3)  # pixels around the vertices of a place that are compared with the photo
+_CROWDED = cython.declare(cython.int, 14)  # edges in a window: no junction, but texture
+_BEND = cython.declare(cython.double, 8.0)  # what a radian of turning costs: a bevel turns as far as its corner
+_SHARP = cython.declare(cython.double, 1.65)  # radians that the way turns at a thorn
+_ARM = cython.declare(cython.double, 0.75)  # of how far blur reaches: a thorn's shorter edge
+_BENT = cython.declare(cython.double, 2.0)  # pixels: shorter edges have no bend
+_ROUNDS = cython.declare(cython.int, 5)  # of Gauss and Newton, to settle
+_GLANCE = cython.declare(cython.int, 2)  # and to tell whether a change is worth it
+_STEPS = cython.declare(cython.int, 4)  # changes one after the other at one place
+_LOOSE = cython.declare(cython.double, 0.5)  # by which a vertex stays where it is, in noise² a pixel²
+_LINE = cython.declare(cython.double, 0.015)  # of step² a pixel, over the blur: what an edge tells of its end
+_TOLD = cython.declare(cython.double, 40.0)  # pixels: longer edges may be curved
+_VERTEX = cython.declare(cython.double, 3.0)  # the logarithm of the pixels that its two coordinates are told by
+
+
+@cython.final
+@cython.cclass
+class Settler(Window):
+    """Looks at a place through a window, and finds what had better be there.
+
+    near: how far (pixels) blur may have moved things apart; halo: how far it reaches; floor: least variance of
+    what a model leaves unexplained, grey²; unit: pixels. given, best: the place before and after; pixels: how
+    many are compared; segments: the arrangement's in the window, lines: what is known of each: its normal, its offset
+    and the weight of what lies outside.
+    """
+
+    def __init__(
+        self,
+        photo: cython.float[:, ::1],
+        taps: cython.double[::1],
+        spread: cython.double,
+        near: cython.double,
+        halo: cython.int,
+        floor: cython.double,
+        unit: cython.double,
+    ):
+        Window.__init__(self, photo, taps, spread)
+        self.near, self.halo, self.floor, self.unit = near, halo, floor, unit
+        self.given, self.best = Place(), Place()
+        self.chosen, self.other, self.trial = Place(), Place(), Place()
+
+    def segments_in_view(self, planar: Planar, site: cython.int[::1]) -> list:
+        """The segments that a site is told by; none where it is not to be settled."""
+        return [self.segments[k] for k in range(self.given.edges)] if self.view(planar, site) else []
+
+    def improve(self, planar: Planar, step: cython.double[::1], site: cython.int[::1]) -> tuple | None:
+        """What is at a site, and what had better be there; None where that is the same.
+
+        step: (n,) grey step at each vertex. site: vertices that belong together.
+        """
+        better: cython.bint = False
+        given: Place
+        best: Place
+        with cython.nogil:
+            if self.view(planar, site):
+                self.know(planar, step)
+                better = self.search()
+        if not better:
+            return None
+        given, best = Place(), Place()
+        given.take(self.given)
+        best.take(self.best)
+        return given, best
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def view(self, planar: Planar, site: cython.int[::1]) -> cython.bint:
+        """Open the window around a site and gather the given place: whether it is to be settled."""
+        height: cython.int = self.photo.shape[0]
+        width: cython.int = self.photo.shape[1]
+        k: cython.int
+        v: cython.int
+        count: cython.int
+        free: cython.int = 0
+        x: cython.double
+        y: cython.double
+        low_x: cython.double = INFINITY
+        low_y: cython.double = INFINITY
+        high_x: cython.double = -INFINITY
+        high_y: cython.double = -INFINITY
+        for k in range(site.shape[0]):
+            x = planar.vertices[site[k], 0] * self.unit
+            y = planar.vertices[site[k], 1] * self.unit
+            low_x = fmin(low_x, x)
+            low_y = fmin(low_y, y)
+            high_x = fmax(high_x, x)
+            high_y = fmax(high_y, y)
+        low_x = floor(low_x) - _AROUND
+        low_y = floor(low_y) - _AROUND
+        high_x = ceil(high_x) + _AROUND
+        high_y = ceil(high_y) + _AROUND
+        if fmax(high_x - low_x, high_y - low_y) + 2 * self.halo > MOST_SIDE:
+            return False
+        count = planar.within(
+            (low_x - self.halo) / self.unit,
+            (low_y - self.halo) / self.unit,
+            (high_x + self.halo) / self.unit,
+            (high_y + self.halo) / self.unit,
+            self.segments,
+            _CROWDED,
+        )
+        if count == 0 or count > _CROWDED:
+            return False
+        self.given.vertices = 0
+        self.given.edges = 0
+        for k in range(count):
+            self.given.edge(
+                self.vertex_of(planar, planar.ends[self.segments[k], 0]),
+                self.vertex_of(planar, planar.ends[self.segments[k], 1]),
+                self.segments[k],
+                k,
+            )
+        self.given.count()
+        for v in range(self.given.vertices):
+            x = self.given.x[v]
+            y = self.given.y[v]
+            self.given.free[v] = low_x <= x <= high_x and low_y <= y <= high_y and 0 < x < width and 0 < y < height
+            free += self.given.free[v]
+        if free > MOST_MOVED:
+            for v in range(self.given.vertices):
+                self.given.free[v] = False
+            for k in range(site.shape[0]):
+                for v in range(self.given.vertices):
+                    if self.given.name[v] == site[k]:
+                        self.given.free[v] = True
+            if site.shape[0] > MOST_MOVED:
+                return False
+        if self.given.closed():
+            return False
+        self.pixels = self.open(
+            cython.cast(cython.int, low_y) - self.halo,
+            cython.cast(cython.int, low_x) - self.halo,
+            cython.cast(cython.int, high_y) + self.halo,
+            cython.cast(cython.int, high_x) + self.halo,
+            self.halo,
+        )
+        return True
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def vertex_of(self, planar: Planar, name: cython.int) -> cython.int:
+        """The given place's vertex of that name, entered where it is new."""
+        v: cython.int
+        for v in range(self.given.vertices):
+            if self.given.name[v] == name:
+                return v
+        v = self.given.vertex(planar.vertices[name, 0] * self.unit, planar.vertices[name, 1] * self.unit, name)
+        return v
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def know(self, planar: Planar, step: cython.double[::1]) -> cython.void:
+        """Fill in `lines`; an edge that does not lead out of the window tells nothing."""
+        e: cython.int
+        v: cython.int
+        u: cython.int
+        length: cython.double
+        outside: cython.double
+        across: cython.double
+        nx: cython.double
+        ny: cython.double
+        for e in range(self.given.edges):
+            v = self.given.a[e] if self.given.free[self.given.a[e]] else self.given.b[e]
+            u = self.given.a[e] + self.given.b[e] - v
+            length = self.given.apart(u, v)
+            outside = fmin(length, _TOLD) - _AROUND - 1
+            if self.given.free[v] == self.given.free[u] or outside <= 0:
+                self.given.line[e] = -1
+                continue
+            nx = (self.given.y[v] - self.given.y[u]) / length
+            ny = (self.given.x[u] - self.given.x[v]) / length
+            across = fmax(step[self.given.name[v]], step[self.given.name[u]])
+            self.lines[e][0] = nx
+            self.lines[e][1] = ny
+            self.lines[e][2] = nx * (self.given.x[v] - self.left) + ny * (self.given.y[v] - self.top)
+            self.lines[e][3] = _LINE * across * across * outside / self.spread
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def hold(self, place: Place) -> cython.bint:
+        """Number the vertices to be moved, and hold each where it is and on its lines; False for too many."""
+        v: cython.int
+        k: cython.int
+        e: cython.int
+        end: cython.int
+        x: cython.double
+        y: cython.double
+        w: cython.double = _LOOSE * self.floor
+        line: cython.p_double
+        held: cython.p_double
+        if not self.enumerate(place):
+            return False
+        for v in range(place.vertices):
+            k = self.number[v]
+            if k >= 0:
+                x = place.x[v] - self.left
+                y = place.y[v] - self.top
+                held = cython.address(self.held[k, 0])
+                held[0] = held[2] = w
+                held[1] = 0.0
+                held[3] = w * x
+                held[4] = w * y
+                held[5] = w * (x * x + y * y)
+        for e in range(place.edges):
+            if place.line[e] < 0:
+                continue
+            line = cython.address(self.lines[place.line[e]][0])
+            for end in range(2):
+                k = self.number[place.b[e] if end else place.a[e]]
+                if k >= 0:
+                    held = cython.address(self.held[k, 0])
+                    w = line[3]
+                    held[0] += w * line[0] * line[0]
+                    held[1] += w * line[0] * line[1]
+                    held[2] += w * line[1] * line[1]
+                    held[3] += w * line[0] * line[2]
+                    held[4] += w * line[1] * line[2]
+                    held[5] += w * line[2] * line[2]
+        return True
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def settled(self, place: Place, rounds: cython.int) -> cython.double:
+        """Move the place's vertices to where the photo wants them: its description length up to a constant.
+
+        Infinite where there are too many regions or vertices, or thorns: sharp points of short edges, which
+        blur cannot show.
+        """
+        v: cython.int
+        left_over: cython.double
+        turn: cython.double
+        arm: cython.double = 0.0
+        score: cython.double
+        if not self.hold(place):
+            return INFINITY
+        left_over = self.settle(place, self.trial, rounds)
+        if left_over < 0:
+            return INFINITY
+        score = self.pixels * log(left_over / self.pixels + self.floor)
+        for v in range(place.vertices):
+            if place.degree[v] > 0:
+                score += _VERTEX
+            if place.degree[v] == 2 and place.free[v]:
+                turn = place.turn(v, cython.address(arm))
+                if rounds > 0 and turn > _SHARP and arm < _ARM * self.near:
+                    return INFINITY
+                score += _BEND * turn
+        return score
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def search(self) -> cython.bint:
+        """From the given place by single changes to the best: whether that is another."""
+        best_score: cython.double
+        score: cython.double
+        unchanged: cython.bint
+        turn: cython.int
+        self.best.take(self.given)
+        best_score = self.settled(self.best, 0)
+        if best_score == INFINITY:
+            return False
+        for turn in range(_STEPS):
+            self.score = INFINITY
+            if turn == 0:
+                self.other.take(self.best)
+                self.consider(_ROUNDS)
+            score = self.score
+            self.merge()
+            self.join()
+            if self.score >= best_score - 1:
+                self.bend()
+            unchanged = turn == 0 and self.score == score
+            if self.score == INFINITY:
+                return turn > 0
+            if not unchanged:
+                self.other.take(self.chosen)
+                score = self.settled(self.other, _ROUNDS)
+                if score < INFINITY:
+                    self.score = score
+                    self.chosen.take(self.other)
+            if self.score >= best_score - 1:
+                return turn > 0
+            best_score = self.score
+            self.best.take(self.chosen)
+        return True
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def consider(self, rounds: cython.int) -> cython.void:
+        """Settle `other`, and choose it if it is better than what is chosen."""
+        score: cython.double = self.settled(self.other, rounds)
+        if score < self.score:
+            self.score = score
+            self.chosen.take(self.other)
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def merge(self) -> cython.void:
+        """Try short edges as points: where the edges beyond would cross, or at the busier end, or between."""
+        e: cython.int
+        for e in range(self.best.edges):
+            if self.within(e) and self.best.apart(self.best.a[e], self.best.b[e]) < self.near:
+                self.shrink(self.best.a[e], self.best.b[e])
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def within(self, e: cython.int) -> cython.bint:
+        """Whether all of an edge may be moved."""
+        return self.best.free[self.best.a[e]] and self.best.free[self.best.b[e]]
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def shrink(self, a: cython.int, b: cython.int) -> cython.void:
+        """Try the edge from a to b as a point."""
+        busier: cython.int = self.best.degree[a] - self.best.degree[b]
+        x: cython.double = 0.0
+        y: cython.double = 0.0
+        if (
+            self.best.degree[a] == 2
+            and self.best.degree[b] == 2
+            and self.best.meeting(a, b, cython.address(x), cython.address(y))
+            and self.best.from_place(a, x, y) + self.best.from_place(b, x, y) < 3 * self.near
+        ):
+            self.other.take(self.best)
+            self.other.unite(a, b, x, y)
+            self.consider(_GLANCE)
+        x = 0.5 * (self.best.x[a] + self.best.x[b])
+        y = 0.5 * (self.best.y[a] + self.best.y[b])
+        if busier != 0:
+            x = self.best.x[a if busier > 0 else b]
+            y = self.best.y[a if busier > 0 else b]
+        self.other.take(self.best)
+        self.other.unite(a, b, x, y)
+        self.consider(_GLANCE)
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def join(self) -> cython.void:
+        """Try open ends at the vertices and edges near them."""
+        v: cython.int
+        e: cython.int
+        for v in range(self.best.vertices):
+            if self.best.free[v] and self.best.degree[v] == 1:
+                for e in range(self.best.edges):
+                    if self.best.a[e] != v and self.best.b[e] != v:
+                        self.meet(v, e)
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def meet(self, v: cython.int, e: cython.int) -> cython.void:
+        """Try an open end at an edge's nearer vertex, and at the edge."""
+        a: cython.int = self.best.a[e]
+        b: cython.int = self.best.b[e]
+        part: cython.double = self.best.foot(v, e)
+        x: cython.double = self.best.x[a] + part * (self.best.x[b] - self.best.x[a])
+        y: cython.double = self.best.y[a] + part * (self.best.y[b] - self.best.y[a])
+        u: cython.int = a if part < 0.5 else b
+        if self.best.from_place(v, x, y) > self.near:
+            return
+        if self.best.free[u] and self.best.apart(u, v) < self.near:
+            self.other.take(self.best)
+            self.other.unite(u, v, self.best.x[u], self.best.y[u])
+            self.consider(_GLANCE)
+        if 0 < part < 1 and self.best.edges < MOST_EDGES:
+            self.other.take(self.best)
+            self.other.x[v] = x
+            self.other.y[v] = y
+            self.other.split(e, v)
+            self.consider(_GLANCE)
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def bend(self) -> cython.void:
+        """Try a vertex more in the middle of an edge of which both ends are close."""
+        e: cython.int
+        v: cython.int
+        a: cython.int
+        b: cython.int
+        for e in range(self.best.edges):
+            a = self.best.a[e]
+            b = self.best.b[e]
+            if not self.within(e) or self.best.apart(a, b) <= _BENT or self.best.edges == MOST_EDGES:
+                continue
+            self.other.take(self.best)
+            v = self.other.vertex(0.5 * (self.best.x[a] + self.best.x[b]), 0.5 * (self.best.y[a] + self.best.y[b]), NEW)
+            if v >= 0:
+                self.other.free[v] = True
+                self.other.split(e, v)
+                self.consider(_GLANCE)
