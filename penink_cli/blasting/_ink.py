@@ -11,10 +11,15 @@ whose order could depend on anything but the input, so the bytes are the same ev
 
 import cython
 from cython.cimports.libc.math import fabs, sqrt
+from cython.cimports.penink_cli.blasting._rows import Outline, bits_set, meet_rows, whole_places
 
 COMPILED = cython.compiled
 #: Which part of a pixel's width an edge gains on the mean; measured on strokes in all directions, 300 to 1200 dpi.
 GAIN = cython.declare(cython.double, 0.985)
+#: Words with the first n bits set.
+UP_TO = cython.declare(cython.ulonglong[65])
+for _bits in range(65):
+    UP_TO[_bits] = (1 << _bits) - 1
 
 
 @cython.cfunc
@@ -29,35 +34,6 @@ def _by_bytes(word: cython.ulonglong) -> cython.ulonglong:
     word -= (word >> 1) & ones
     word = (word & pairs) + ((word >> 2) & pairs)
     return (word + (word >> 4)) & halves
-
-
-@cython.cfunc
-@cython.inline
-@cython.nogil
-@cython.exceptval(check=False)
-def _span(
-    row: cython.p_ulonglong, c0: cython.Py_ssize_t, c1: cython.Py_ssize_t, write: cython.bint
-) -> cython.int:
-    """Subpixels c0 < c1 of one row: how many are not inked yet; ink them if told to."""
-    each: cython.ulonglong = 0x0101010101010101
-    full: cython.ulonglong = 0xFFFFFFFFFFFFFFFF
-    mask: cython.ulonglong
-    bare: cython.ulonglong
-    total: cython.int = 0
-    end: cython.Py_ssize_t
-    x: cython.Py_ssize_t
-    # a stroke is a few subpixels wide, so this is one word nearly always
-    while c0 < c1:
-        x = c0 >> 6
-        end = (x + 1) << 6
-        end = c1 if c1 < end else end
-        mask = (full >> (64 - (end - c0))) << (c0 & 63)
-        bare = mask & ~row[8 * x]
-        if write:
-            row[8 * x] |= mask
-        total += cython.cast(cython.int, (_by_bytes(bare) * each) >> 56)
-        c0 = end
-    return total
 
 
 @cython.cfunc
@@ -77,29 +53,34 @@ def bar(
     ux: cython.double = x1 - x0
     uy: cython.double = y1 - y0
     length: cython.double = sqrt(ux * ux + uy * uy)
-    side: cython.double
     low: cython.double
     high: cython.double
+    left: cython.double
+    right: cython.double
     row: cython.Py_ssize_t
-    first: cython.Py_ssize_t
     last: cython.Py_ssize_t
-    c0: cython.Py_ssize_t
-    c1: cython.Py_ssize_t
-    lo: cython.double
-    hi: cython.double
+    column: cython.Py_ssize_t
+    base: cython.Py_ssize_t
+    count: cython.Py_ssize_t
+    n: cython.Py_ssize_t
+    lo: cython.float[16]
+    hi: cython.float[16]
+    c0: cython.int[16]
+    c1: cython.int[16]
+    bare: cython.ulonglong[17]
     d: cython.double
     h: cython.double
-    # across a row d below the start, the rectangle reaches from the larger of two lines in d
-    # (its end and its side) to the smaller of two others
-    end_rate: cython.double = 0.0
-    end_lo: cython.double = -1e30
-    end_hi: cython.double = 1e30
-    side_rate: cython.double = 0.0
-    side_lo: cython.double = -1e30
-    side_hi: cython.double = 1e30
+    sides: Outline
+    word: cython.p_ulonglong
+    mask: cython.ulonglong
     total: cython.int = 0
     rows *= 8
     columns *= 8
+    sides.end_rate = 0.0
+    sides.side_rate = 0.0
+    sides.end_hi = 1e30
+    sides.side_lo = -1e30
+    sides.side_hi = 1e30
     if length > 1e-9:
         ux /= length
         uy /= length
@@ -108,54 +89,69 @@ def bar(
             ux = 1e-7
         if fabs(uy) < 1e-7:
             uy = 1e-7
-        end_rate = -uy / ux
         h = length / ux
-        end_lo = h if h < 0.0 else 0.0
-        end_hi = 0.0 if h < 0.0 else h
-        side_rate = ux / uy
-        side_hi = fabs(r / uy)
-        side_lo = -side_hi
+        sides.end_rate = -uy / ux
+        sides.end_lo = h if h < 0.0 else 0.0
+        sides.end_hi = 0.0 if h < 0.0 else h
+        h = fabs(r / uy)
+        sides.side_rate = ux / uy
+        sides.side_lo = -h
+        sides.side_hi = h
     else:
-        end_lo = 1e30
+        sides.end_lo = 1e30
         ux = 1.0
-    side = r if (cap0 or cap1) else r * fabs(ux)
-    low = (y0 if y0 < y1 else y1) - side
-    high = (y1 if y0 < y1 else y0) + side
-    if high <= 0.0 or low >= rows:
+        uy = 1.0
+    h = r if (cap0 or cap1) else r * fabs(ux)
+    low = (y0 if y0 < y1 else y1) - h
+    high = (y1 if y0 < y1 else y0) + h
+    h = r if (cap0 or cap1) else r * fabs(uy)
+    left = (x0 if x0 < x1 else x1) - h
+    right = (x1 if x0 < x1 else x0) + h
+    if high <= 0.0 or low >= rows or right <= 0.0 or left >= columns:
         return 0
     # rounding is by truncation, for what is not negative: ceil is a call where SSE 4.1 may not be assumed
-    first = cython.cast(cython.Py_ssize_t, low + 0.5) if low > 0.5 else 0
+    row = cython.cast(cython.Py_ssize_t, low + 0.5) if low > 0.5 else 0
     last = cython.cast(cython.Py_ssize_t, high + 0.5) if high < rows else rows
-    for row in range(first, last):
-        d = row + 0.5 - y0
-        lo = end_lo + end_rate * d
-        h = side_lo + side_rate * d
-        lo = h if h > lo else lo
-        hi = end_hi + end_rate * d
-        h = side_hi + side_rate * d
-        hi = h if h < hi else hi
-        if (cap0 or cap1) and not lo < hi:
-            lo = 1e30
-            hi = -1e30
-        lo += x0
-        hi += x0
-        if cap0 and fabs(d) < r:
-            h = sqrt(r * r - d * d)
-            lo = x0 - h if x0 - h < lo else lo
-            hi = x0 + h if x0 + h > hi else hi
-        if cap1:
-            d = row + 0.5 - y1
-            if fabs(d) < r:
-                h = sqrt(r * r - d * d)
-                lo = x1 - h if x1 - h < lo else lo
-                hi = x1 + h if x1 + h > hi else hi
-        # what is beside the sheet is empty after this, as what was empty remains
-        lo = (lo if lo < columns else columns) + 0.5
-        hi = (hi if hi < columns else columns) + 0.5
-        c0 = cython.cast(cython.Py_ssize_t, lo if lo > 0.0 else 0.0)
-        c1 = cython.cast(cython.Py_ssize_t, hi if hi > 0.0 else 0.0)
-        if c0 < c1:
-            total += _span(bits + (row >> 3) * across * 8 + (row & 7), c0, c1, write)
+    column = (cython.cast(cython.Py_ssize_t, left) if left > 0.0 else 0) >> 6
+    columns = columns if columns < right + 1.0 else cython.cast(cython.Py_ssize_t, right) + 1
+    while row < last:
+        count = 16 if row + 16 <= last else last - row
+        meet_rows(cython.address(sides), row + 0.5 - y0, count, lo, hi)
+        if cap0 or cap1:
+            for n in range(count):
+                if not lo[n] < hi[n]:
+                    lo[n] = 1e30
+                    hi[n] = -1e30
+                d = row + n + 0.5 - y0
+                if cap0 and fabs(d) < r:
+                    h = sqrt(r * r - d * d)
+                    lo[n] = -h if -h < lo[n] else lo[n]
+                    hi[n] = h if h > hi[n] else hi[n]
+                d = row + n + 0.5 - y1
+                if cap1 and fabs(d) < r:
+                    h = sqrt(r * r - d * d)
+                    lo[n] = x1 - x0 - h if x1 - x0 - h < lo[n] else lo[n]
+                    hi[n] = x1 - x0 + h if x1 - x0 + h > hi[n] else hi[n]
+        # word by word of the rows: a stroke is a few subpixels wide, so this is one nearly always
+        base = column
+        while 64 * base < columns:
+            h = columns - 64 * base if columns < 64 * base + 64 else 64.0
+            whole_places(lo, x0 - 64 * base + 0.5, h, count, c0)
+            whole_places(hi, x0 - 64 * base + 0.5, h, count, c1)
+            word = bits + ((row >> 3) * across + base) * 8
+            bare[count] = 0
+            for n in range(count):
+                mask = UP_TO[c1[n]] & ~UP_TO[c0[n]]
+                bare[n] = mask & ~word[row & 7]
+                if write:
+                    word[row & 7] |= mask
+                row += 1
+                if row & 7 == 0:
+                    word += 8 * across
+            row -= count
+            total += bits_set(bare, count)
+            base += 1
+        row += count
     return total
 
 

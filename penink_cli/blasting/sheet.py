@@ -13,23 +13,21 @@ look-up a sample.
 A device paints every pixel that a stroke touches. It thereby widens a stroke of direction
 θ by (|cos θ| + |sin θ|) of its pixels; `gain_pt` is the size of that pixel, 0 for none.
 
-This module alone imports the compiled kernels `_ink`, `_due`, `_place` and `_press`.
+This module alone imports the compiled kernels `_ink`, `_place` and `_press`.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import numpy.typing as npt
 
-from penink_cli.blasting import _due, _ink, _place, _press
+from penink_cli.blasting import _ink, _place, _press
 from penink_cli.blasting.curves import Polylines
+from penink_cli.blasting.low_pass import Cells, LowPass
 from penink_cli.model import Floats, Ints
-
-Cells = npt.NDArray[np.float32]
 
 CELL_PT = 0.96
 #: σ of the low-pass of what is due. Narrower than what the eye (and the measure) blurs,
@@ -45,26 +43,6 @@ STEP = 0.25
 #: Candidates are tried in blocks of this size, those of every second block at the same time,
 #: so no stroke longer than this less the kernel may be tried in parallel.
 BLOCK_PT = 144.0
-
-
-def gaussian(sigma: float, radius: int) -> Floats:
-    """(2 radius + 1,) weights that sum to 1, the same on every machine."""
-    w = np.array([round(math.exp(-0.5 * (k / sigma) ** 2), 9) for k in range(-radius, radius + 1)])
-    return w / math.fsum(w)
-
-
-def low_pass_kernel(sigma: float) -> tuple[Cells, Floats]:
-    """A Gaussian of σ cells that sums to 1, (2 r + 1, 16), and its values by distance in quarters of a cell.
-
-    Each row ends in zeros, up to where loops of a fixed length (see `_due`) may run; σ is 2.8 at the most.
-    """
-    radius = math.ceil(2.5 * sigma)
-    g = gaussian(sigma, radius)
-    peak = float(g[radius]) ** 2
-    profile = [round(peak * math.exp(-0.5 * (k / 4 / sigma) ** 2), 9) for k in range(4 * radius + 1)]
-    rows = np.zeros((2 * radius + 1, 16), np.float32)
-    rows[:, : 2 * radius + 1] = np.outer(g, g)
-    return rows, np.array(profile)
 
 
 def halve(values: Cells) -> Cells:
@@ -93,16 +71,15 @@ class Sheet:
         self.threads = max(1, threads)
         self.tone: Cells = resample(tone, self.rows, self.columns).astype(np.float32)
         self.bits = np.zeros((self.rows, (self.columns + 7) // 8, 8), np.uint64)
-        self.kernel, self.profile = low_pass_kernel(SIGMA_PT / CELL_PT)
         self._kept: npt.NDArray[np.uint64] | None = None
         self.residual: Cells = np.zeros((self.rows, self.columns), np.float32)
-        self.step = STEP
+        self.low_pass = LowPass(SIGMA_PT / CELL_PT, self.tone, STEP, self._each)
         #: how much of the kernel about each cell counts
         self.weight = self.low_pass(np.ones_like(self.tone))
         # what the eye sees is kept for cells of twice the size
         self._coarse_tone = halve(self.tone)
-        self._eye, self._eye_profile = low_pass_kernel(EYE_PT / CELL_PT / 2)
-        self._seen_weight = self._gather(np.ones_like(self._coarse_tone), self._coarse_tone, self._eye)
+        self._eye = LowPass(EYE_PT / CELL_PT / 2, self._coarse_tone, STEP, self._each)
+        self._seen_weight = self._eye(np.ones_like(self._coarse_tone))
 
     def clear(self) -> None:
         """Take all ink away but what is there for good."""
@@ -119,10 +96,6 @@ class Sheet:
         _ink.cover(self.bits, out)
         return out
 
-    def low_pass(self, values: Cells) -> Cells:
-        """G * values (rows, columns), cut off at strong steps of tone, zero outside the frame."""
-        return self._gather(values, self.tone, self.kernel)
-
     def error(self) -> Cells:
         """Tone less ink as the eye sees it: the mean over what lies near on this side of strong steps of tone.
 
@@ -135,7 +108,7 @@ class Sheet:
 
         For cells of twice the size, (⌈rows / 2⌉, ⌈columns / 2⌉).
         """
-        return self._gather(halve(values), self._coarse_tone, self._eye) / self._seen_weight
+        return self._eye(halve(values)) / self._seen_weight
 
     def crowd(self, single: float, wide: Cells) -> Cells:
         """How far the strokes in each cell (rows, columns) are many that make its tone together, 0 … 1.
@@ -148,24 +121,13 @@ class Sheet:
         """Values for cells of twice the size as values (rows, columns)."""
         return np.repeat(np.repeat(error, 2, axis=0), 2, axis=1)[: self.rows, : self.columns]
 
-    def _gather(self, values: Cells, guide: Cells, kernel: Cells) -> Cells:
-        out = np.empty_like(values)
-        edges = [*range(0, len(values), 64), len(values)]
-
-        def band(i: int) -> None:
-            _due.gather(values, guide, kernel, self.step, out, edges[i], edges[i + 1])
-
-        self._each(band, range(len(edges) - 1))
-        return out
-
     def owe(self, tone: Cells) -> None:
         """Set what is due: `tone` less the ink so far, low-passed."""
         self.residual = self.low_pass(tone - self.ink)
 
     def owe_strictly(self) -> None:
         """Set what is due by the paper's rule: the tone itself, with the low-passed ink so far taken from it."""
-        self.step = 2.0
-        self.kernel, self.profile = low_pass_kernel(STRICT_SIGMA_PT / CELL_PT)
+        self.low_pass = LowPass(STRICT_SIGMA_PT / CELL_PT, self.tone, 2.0, self._each)
         self.weight = np.ones_like(self.tone)
         self.residual = self.tone - self.low_pass(self.ink)
 
@@ -222,7 +184,8 @@ class Sheet:
 
         def run(order: Ints) -> None:
             _place.place(
-                self.bits, self.residual, self.tone, self.kernel, self.step, self.weight, self.profile,
+                self.bits, self.residual, self.tone, self.low_pass.kernel, self.low_pass.step, self.weight,
+                self.low_pass.profile,
                 points, lines.first, widths_sub, walls, order, self.gain, moves, spacing,
                 whole, strict, caution, lenience, belongs, cost,
                 shortest_pt * self.pitch, shortest_wall_pt * self.pitch,
@@ -255,12 +218,12 @@ class Sheet:
             if turn:
                 self.clear()
                 self.paint(lines, pressed / self.pitch)
-            residual = self._gather(halve(self.tone - self.ink), self._coarse_tone, self._eye)
+            residual = self._eye(halve(self.tone - self.ink))
 
             def run(some: Ints, residual: Cells = residual) -> None:
                 _press.press(
-                    self.bits, self.columns, self.gain, residual, self._coarse_tone, self._eye, self.step,
-                    self._eye_profile, points, lines.first, pressed, low, high, some, fresh, resistance,
+                    self.bits, self.columns, self.gain, residual, self._coarse_tone, self._eye.kernel,
+                    self._eye.step, self._eye.profile, points, lines.first, pressed, low, high, some, fresh, resistance,
                 )  # fmt: skip
 
             for group in groups:

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from penink_cli.blasting.curves import Polylines
+from penink_cli.blasting.low_pass import LowPass
 from penink_cli.blasting.sheet import CELL_PT, Sheet, halve, resample
 
 
@@ -64,6 +65,27 @@ def test_what_is_due_is_kept_up_to_date():
     sheet.owe(sheet.tone)
     assert np.abs(kept - sheet.residual).max() < 0.04
     assert sheet.residual.mean() < 0.49
+
+
+@pytest.mark.parametrize("shape", [(1, 1), (5, 33), (70, 50), (40, 16)])
+@pytest.mark.parametrize("sigma", [2.03, 2.6])
+def test_the_low_pass_stops_at_steps_as_the_oracle_does(shape, sigma):
+    rng = np.random.default_rng(shape[0])
+    values = rng.random(shape, np.float32)
+    guide = np.zeros(shape, np.float32)
+    guide[:, shape[1] // 2 :] = 1.0
+    guide += rng.random(shape, np.float32) * np.float32(0.3 if shape[0] < 50 else 0.1)
+    rows, columns = shape
+    low_pass = LowPass(sigma, guide, 0.25, lambda work, items: [work(i) for i in items])
+    radius = len(low_pass.kernel) // 2
+    wanted = np.zeros(shape)
+    for y in range(rows):
+        for x in range(columns):
+            for i in range(max(0, y - radius), min(rows, y + radius + 1)):
+                for j in range(max(0, x - radius), min(columns, x + radius + 1)):
+                    if abs(guide[i, j] - guide[y, x]) < 0.25:
+                        wanted[y, x] += low_pass.kernel[i - y + radius, j - x + radius] * values[i, j]
+    assert np.abs(low_pass(values) - wanted).max() < 1e-5
 
 
 def test_no_ink_is_credited_across_a_strong_step():
