@@ -10,6 +10,7 @@ one tells as much of a grid of a hundred samples a side. The grid found is then 
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -31,7 +32,8 @@ MAX_ERROR = 8 / 255
 LEAST_REGION_PX = 16  # pixels of the photo; smaller ones are specks that no stroke can show
 _VIEW_PX = 1_000_000
 _LEAST_SIDE = 32  # samples; below that a cell holds too much of the picture
-_FINER = 1.03  # ratio of neighbouring grids that are tried
+_RUNG = 100  # the error is tried of grids that differ by a sample a side, or by 1/100 where that is more
+_FINER = 1.03  # how much finer the grid is at the next try, where the photo itself finds a grid too coarse
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,42 +106,45 @@ def choose_grid(
     exact = _View(seen, 0.0, POINT) if photo is None else _View(seen, camera_blur(seen, edges), AREA)
     quick = exact.smaller(_VIEW_PX)
     regions = _Regions(edges, *seen.shape)
-    tried: dict[tuple[int, int, bool], Grid] = {}
+    long = max(width, height)
+    ladder = _ladder(-(-_LEAST_SIDE * long // min(width, height)), long)
+    tried: dict[tuple[int, bool], Grid] = {}
 
-    def attempt(factor: float, view: _View) -> Grid:
-        size = _size(width, height, factor)
-        key = (*size, view is exact)
+    def size(side: int) -> tuple[int, int]:
+        return max(1, round(width * side / long)), max(1, round(height * side / long))
+
+    def attempt(side: int, view: _View) -> Grid:
+        key = side, view is exact
         if key not in tried:
             fit_to = photo if view is exact else view.picture
-            reduced = reduce(samples, edges, *size, photo=fit_to, fit=fit, blur=view.blur, threads=threads)
+            reduced = reduce(samples, edges, *size(side), photo=fit_to, fit=fit, blur=view.blur, threads=threads)
             error = remaining_error(reduced, edges, view.picture, view.blur, view.fine, threads)
-            tried[key] = Grid(reduced, error, regions.without_sample(*size))
+            tried[key] = Grid(reduced, error, regions.without_sample(*size(side)))
             report(
-                f"{size[0]} x {size[1]}: error {255 * error:.2f} of 255, "
+                f"{reduced.shape[1]} x {reduced.shape[0]}: error {255 * error:.2f} of 255, "
                 f"{tried[key].empty_regions} regions without a sample"
             )
         return tried[key]
 
-    def search(limit: float) -> float:
-        """The largest factor whose error, in the quick view, stays within the limit, with no region empty."""
-        fine, coarse = 1.0, max(1.0, min(width, height) / _LEAST_SIDE)
-        while coarse / fine > _FINER and _size(width, height, fine) != _size(width, height, coarse):
-            middle = (fine * coarse) ** 0.5
-            if attempt(middle, quick).error <= limit:
-                fine = middle
-            else:
-                coarse = middle
-        while fine > 1 and regions.without_sample(*_size(width, height, fine)):
-            fine = max(1.0, fine / _FINER)
-        return fine
+    def search(limit: float, finer_than: float = 0.0) -> int:
+        """The least side of the ladder whose error, in the quick view, stays within the limit."""
+        rungs = [side for side in ladder if side >= finer_than] or [long]
+        at = bisect_left(rungs[:-1], True, key=lambda side: attempt(side, quick).error <= limit)
+        return rungs[at]
 
-    factor = search(max_error)
-    chosen = attempt(factor, exact)
-    while chosen.error > max_error and factor > 1 and quick is not exact:
+    def serving(side: int) -> int:
+        """The least side from there on that leaves no region empty."""
+        while side < long and regions.without_sample(*size(side)):
+            side += 1
+        return side
+
+    side = serving(search(max_error))
+    chosen = attempt(side, exact)
+    while chosen.error > max_error and side < long:
         # the photo's noise, most of which a smaller view does not have, leaves that much less to the grid
-        unseen = max(0.0, chosen.error**2 - attempt(factor, quick).error ** 2)
-        factor = max(1.0, min(factor / _FINER, search(max(0.0, max_error**2 - unseen) ** 0.5)))
-        chosen = attempt(factor, exact)
+        unseen = max(0.0, chosen.error**2 - attempt(side, quick).error ** 2)
+        side = serving(search(max(0.0, max_error**2 - unseen) ** 0.5, _FINER * side))
+        chosen = attempt(side, exact)
     if chosen.error > max_error:
         raise ParameterError(f"even {width} x {height} samples leave an error of {255 * chosen.error:.2f} of 255")
     return chosen
@@ -167,8 +172,13 @@ def remaining_error(
     return float(np.sqrt(total / photo.size))
 
 
-def _size(width: int, height: int, factor: float) -> tuple[int, int]:
-    return max(1, round(width / factor)), max(1, round(height / factor))
+def _ladder(least: int, most: int) -> list[int]:
+    """Sides from coarse to that of the samples: the same for any error, so that more of it never takes a finer grid."""
+    ladder = []
+    while least < most:
+        ladder.append(least)
+        least += 1 + least // _RUNG
+    return [*ladder, most]
 
 
 class _Regions:
@@ -179,12 +189,15 @@ class _Regions:
         _walls.block(*segments(edges, width, height), walls)
         parent = np.zeros(height * width, np.int32)
         _walls.regions(walls, parent)
-        self.region = parent.reshape(height, width)
-        self.wanted = np.flatnonzero(np.bincount(parent) >= LEAST_REGION_PX)
+        wanted = np.bincount(parent) >= LEAST_REGION_PX
+        self.count = int(wanted.sum())
+        number = np.where(wanted, np.cumsum(wanted), 0).astype(np.int32)
+        self.region = number[parent].reshape(height, width)  # 1 …, 0 where it is too small
 
     def without_sample(self, width: int, height: int) -> int:
         """How many regions hold no sample of a grid of width × height."""
         rows = ((np.arange(height) + 0.5) * self.region.shape[0] / height).astype(int)
         columns = ((np.arange(width) + 0.5) * self.region.shape[1] / width).astype(int)
-        held = np.unique(self.region[np.ix_(rows, columns)])
-        return len(np.setdiff1d(self.wanted, held, assume_unique=True))
+        held = np.zeros(self.count + 1, bool)
+        held[self.region[np.ix_(rows, columns)]] = True
+        return self.count - int(held[1:].sum())

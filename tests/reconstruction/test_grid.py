@@ -58,6 +58,26 @@ def test_every_region_gets_a_sample():
     assert inside and chosen.empty_regions == 0
 
 
+@pytest.mark.parametrize("seed", range(3))
+def test_the_grid_is_the_least_with_a_sample_in_every_region(seed):
+    """Which grids have one is nearly chance: to step by a few percent leaps over many."""
+    random = np.random.default_rng(seed)
+    low = 24 * np.stack(np.mgrid[:10, :10], -1).reshape(-1, 2) + random.integers(1, 15, (100, 2))
+    corners = low[:, None] + np.array([[0, 0], [2, 0], [2, 9], [0, 9.0]])
+    ends = np.array([[0, 1], [1, 2], [2, 3], [3, 0]]) + 4 * np.arange(100)[:, None, None]
+    edges = EdgeList(240, 240, corners.reshape(-1, 2), ends.reshape(-1, 2))
+    grids = [choose_grid(picture(240), edges, error / 255, fit="none") for error in (0.01, 0.4, 2, 4)]
+    sides = [grid.samples.shape[0] for grid in grids]
+    assert sides == sorted(sides, reverse=True) and sides[0] > sides[-1]
+
+    def every_region_holds_a_sample(side):
+        at = (np.arange(side) + 0.5) * 240 / side
+        held = (at > low[..., None]) & (at < low[..., None] + [[2], [9]])
+        return held.any(axis=2).all()
+
+    assert sides[-1] == next(side for side in range(32, 241) if every_region_holds_a_sample(side))
+
+
 def test_what_cannot_be_kept_is_an_error():
     noise = np.random.default_rng(1).random((40, 40)).astype(np.float32)
     with pytest.raises(ParameterError, match="even 40 x 40"):
