@@ -25,6 +25,9 @@ SHORTEST_PT = 6.0
 KNOT_PT = 7.0
 #: So many strokes lie side by side along one thing at the most.
 MOST = 4
+#: Each of them begins and ends so many times further in than the next one towards the middle, in widths of what is
+#: painted, at the start and at the end: cut off straight they were bars.
+TAPER = (2.0, 3.0)
 #: What is fainter than a line of the pen is drawn with a finer one, of so much of its width at the least,
 #: and no finer than the device's pixels bear.
 FINEST = 0.55
@@ -158,17 +161,21 @@ def strokes_along(sheet: Sheet, pen_pt: float, painted_pt: float, fixed: bool) -
         run = np.concatenate([[0.0], np.cumsum(np.sqrt((legs * legs).sum(axis=1)))])
         if run[-1] < SHORTEST_PT:
             continue
-        n = max(1, round(run[-1] / KNOT_PT))
-        s = np.linspace(0.0, run[-1], n + 1)
-        knots = np.column_stack([np.interp(s, run, p[:, 0]), np.interp(s, run, p[:, 1])])
-        slope = np.gradient(knots, axis=0) / 3 if n > 1 else np.repeat(knots[1:] - knots[:1], 2, axis=0) / 3
         broad = breadth(tone, where, nx, ny, float(cell.min()))
         side_by_side = int(min(max(round(broad / (1.1 * painted_pt)), 1), MOST))
         pen = pen_pt if fixed else min(max(pen_pt * broad / painted_pt, FINEST * pen_pt, 1.5 * sheet.gain_pt), pen_pt)
-        length = np.maximum(np.sqrt((slope * slope).sum(axis=1)), 1e-9)[:, None]
-        normal = np.column_stack([-slope[:, 1], slope[:, 0]]) / length
         for k in range(side_by_side):
-            moved = knots + normal * ((k - (side_by_side - 1) / 2) * broad / side_by_side)
+            aside = k - (side_by_side - 1) / 2
+            start, end = abs(aside) * painted_pt * TAPER[0], run[-1] - abs(aside) * painted_pt * TAPER[1]
+            if end - start < SHORTEST_PT:
+                continue
+            n = max(1, round((end - start) / KNOT_PT))
+            s = np.linspace(start, end, n + 1)
+            knots = np.column_stack([np.interp(s, run, p[:, 0]), np.interp(s, run, p[:, 1])])
+            slope = np.gradient(knots, axis=0) / 3 if n > 1 else np.repeat(knots[1:] - knots[:1], 2, axis=0) / 3
+            length = np.maximum(np.sqrt((slope * slope).sum(axis=1)), 1e-9)[:, None]
+            normal = np.column_stack([-slope[:, 1], slope[:, 0]]) / length
+            moved = knots + normal * (aside * broad / side_by_side)
             inner = np.stack([moved[:-1] + slope[:-1], moved[1:] - slope[1:], moved[1:]], axis=1).reshape(-1, 2)
             parts.append(np.concatenate([moved[:1], inner]))
             sizes.append(3 * n + 1)

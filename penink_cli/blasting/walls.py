@@ -11,13 +11,14 @@ import numpy as np
 import numpy.typing as npt
 
 from penink_cli.blasting import _walls, curves
-from penink_cli.blasting.sheet import Sheet
+from penink_cli.blasting.sheet import STEP, Sheet
 from penink_cli.model import EdgeList, Floats, Ints
 
 CELL_PT = 6.0
-#: Steps of tone at which an edge is a wall, and at which it is one if it goes on from a wall. Cutting strokes at
-#: every weak edge leaves stubble between edges that run side by side.
-STRONG, WEAK = 0.35, 0.18
+#: Steps of tone at which an edge is a wall, and at which it is one if it goes on from a wall: those over which ink is
+#: not credited, so that a stroke across a lesser one is no mistake. Cutting strokes at every weak edge leaves stubble
+#: between edges that run side by side: at 0.18 astronaut had 80 % of its ink in long strokes, now it has 83.
+STRONG, WEAK = 0.35, STEP
 #: Edges that hang together are a wall if they are longer than this: what is smaller than the strokes themselves is
 #: shaped by trimming these to its tone, cut at its outline it is all stubs.
 SHORTEST_WALL_PT = 40.0

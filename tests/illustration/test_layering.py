@@ -30,8 +30,12 @@ def two_layers(side: int = 48) -> tuple[Illustration, np.ndarray]:
 
 
 def left_over(illustration: Illustration, tone: np.ndarray) -> float:
-    strokes = joined([part for layer in layering.layer_strokes(illustration, 144.0) for part in layer])
-    return measures.tone_figures(strokes, tone)[0]
+    """The mean of four hands: one's may be off by a tenth."""
+    drawings = [
+        joined([part for layer in layering.layer_strokes(illustration, 144.0, seed=100 * hand) for part in layer])
+        for hand in range(4)
+    ]
+    return float(np.mean([measures.tone_figures(strokes, tone)[0] for strokes in drawings]))
 
 
 def test_what_is_left_over_along_a_common_border_is_fed_back(monkeypatch):
@@ -39,7 +43,7 @@ def test_what_is_left_over_along_a_common_border_is_fed_back(monkeypatch):
     together = left_over(illustration, tone)
     monkeypatch.setattr(layering, "ROUNDS", 1)
     assert together < 0.9
-    assert together < 0.95 * left_over(illustration, tone)
+    assert together < 0.9 * left_over(illustration, tone)
 
 
 def test_it_advances_as_often_as_it_says():
