@@ -21,7 +21,7 @@ import numpy as np
 import numpy.typing as npt
 
 from penink_cli.model import EdgeList, Floats
-from penink_cli.reconstruction import _banded, _fit, _tile
+from penink_cli.reconstruction import _banded, _desk, _fit, _rows, _tile
 from penink_cli.reconstruction import threads as threading
 from penink_cli.reconstruction.lattice import Axis, axis
 from penink_cli.reconstruction.paths import Paths, spill
@@ -122,27 +122,28 @@ def fit_samples(
         threads: the bytes are the same for any number.
 
     """
-    height, width = start.shape
-    h, w = photo.shape
     if not len(edges.edges):
         return start
-    paths = Paths(edges, width, height)
-    work = _Fit(
-        photo,
-        paths,
-        np.ascontiguousarray(start, np.float64),
-        axis(w * fine, width, 0, w * fine),
-        axis(h * fine, height, 0, h * fine),
-        blur_kernel(blur),
-        fine,
-        hold,
-        _crowds(edges, width, height),
-    )
-    side = max(8, round(_BLOCK_PX * width / w))
     out = start.copy()
-    tasks = [partial(work.band, top, side, out) for top in range(0, height, side)]
-    threading.share(tasks, threading.count(threads))
+    _Fit(photo, edges, start, blur_kernel(blur), fine, hold).run(out, threading.count(threads))
     return out
+
+
+class _Hand:
+    """What one thread at a time works with: a search, room for a tile and its numbers, and for those of a block."""
+
+    def __init__(self, paths: Paths, step_x: float, step_y: float) -> None:
+        self.finder = paths.finder(closed=True, rows=(0, 0))
+        self.tile = _tile.Tile(self.finder, step_x, step_y, 1 + spill(1.0))
+        self.desk = _desk.Desk(True)
+        self.numbers = np.empty(0, np.float32)
+
+    def room(self, *shapes: tuple[int, ...]) -> list[Grey32]:
+        """Arrays to fill, the same memory for every block: fresh pages cost a seventh of the whole fit."""
+        ends = np.cumsum([math.prod(shape) for shape in shapes])
+        if len(self.numbers) < ends[-1]:
+            self.numbers = np.empty(ends[-1], np.float32)
+        return [part.reshape(shape) for part, shape in zip(np.split(self.numbers, ends), shapes)]
 
 
 class _Fit:
@@ -151,62 +152,72 @@ class _Fit:
     def __init__(
         self,
         photo: Grey32,
-        paths: Paths,
+        edges: EdgeList,
         start: Floats,
-        x: Axis,
-        y: Axis,
         kernel: Floats,
         fine: int,
         hold: float,
-        crowds: npt.NDArray[np.int64],
     ) -> None:
-        self.photo, self.paths, self.start, self.x, self.y = photo, paths, start, x, y
-        self.kernel, self.fine, self.hold = kernel, fine, hold
         self.height, self.width = start.shape
-        self.crowds = crowds
-        self.x_base, self.x_plain = _plain_rows(x, self.width, fine)
-        self.y_base, self.y_plain = _plain_rows(y, self.height, fine)
+        h, w = photo.shape
+        self.photo, self.start = photo, start
+        self.kernel, self.fine, self.hold = kernel.astype(np.float32), fine, hold
+        self.paths = Paths(edges, self.width, self.height)
+        self.x, self.y = axis(w * fine, self.width, 0, w * fine), axis(h * fine, self.height, 0, h * fine)
+        self.crowds = _crowds(edges, self.width, self.height)
+        self.x_base, self.x_plain = _plain_rows(self.x, self.width, fine)
+        self.y_base, self.y_plain = _plain_rows(self.y, self.height, fine)
+        self.side = max(8, round(_BLOCK_PX * self.width / w))
+        self.hands: list[_Hand] = []
 
-    def band(self, top: int, side: int, out: Floats) -> None:
-        """Fit the blocks whose cores are rows top … top + side of the samples, into out."""
-        bottom = min(self.height, top + side)
+    def run(self, out: Floats, threads: int) -> None:
+        """Fit every block into out."""
+        threading.share([partial(self.band, top, out) for top in range(0, self.height, self.side)], threads)
+
+    def band(self, top: int, out: Floats) -> None:
+        """Fit the blocks whose cores begin in a row of the samples, into out."""
+        bottom = min(self.height, top + self.side)
         first, last = max(0, top - _HALO), min(self.height, bottom + _HALO)
-        finder = self.paths.finder(closed=True, rows=(max(0, first - _HALO), min(self.height, last + _HALO)))
-        tile = _tile.Tile(finder, self.x.step, self.y.step, 1 + spill(1.0))
-        for left in range(0, self.width, side):
-            self.block(tile, (top, bottom, first, last), left, min(self.width, left + side), out)
+        try:
+            hand = self.hands.pop()  # atomic, as giving it back is
+        except IndexError:
+            hand = _Hand(self.paths, self.x.step, self.y.step)
+        hand.finder.move(max(0, first - _HALO), min(self.height, last + _HALO))
+        for left in range(0, self.width, self.side):
+            self.block(hand, (top, bottom, first, last), left, min(self.width, left + self.side), out)
+        self.hands.append(hand)
 
-    def block(self, tile: _tile.Tile, band: tuple[int, int, int, int], left: int, right: int, out: Floats) -> None:
+    def block(self, hand: _Hand, band: tuple[int, int, int, int], left: int, right: int, out: Floats) -> None:
         """Fit one block, if an edge is near it."""
         top, bottom, first, last = band
         begin, end = max(0, left - _HALO), min(self.width, right + _HALO)
-        if _fit.clear(tile, left - _NEAR, top - _NEAR, right + _NEAR, bottom + _NEAR):
+        if _rows.clear(hand.tile, left - _NEAR, top - _NEAR, right + _NEAR, bottom + _NEAR):
             return
         if self.crowds[first:last, begin:end].sum() > _CROWDED * (last - first) * (end - begin):
             return
         rows, columns = _pixels(self.y_base, first, last, self.height), _pixels(self.x_base, begin, end, self.width)
         if rows[0] >= rows[1] or columns[0] >= columns[1]:
             return
-        shape = rows[1] - rows[0], columns[1] - columns[0]
-        weight = np.empty((*shape, _SPAN * _SPAN), np.float32)
+        pixels, samples = (rows[1] - rows[0], columns[1] - columns[0]), (last - first, end - begin)
+        weight, values, steps, seen = hand.room((*pixels, _SPAN * _SPAN), samples, (3, *samples), (2, *pixels))
         x, y = self.x, self.y
         tiles = np.array([*_tiles(y, *rows, self.fine), *_tiles(x, *columns, self.fine)], np.int32)
-        matters = _fit.rows(
-            tile, x.taps.where, x.taps.cubic, x.taps.bspline, x.cell, x.first,
+        matters = _rows.rows(
+            hand.tile, hand.desk, x.taps.where, x.taps.cubic, x.taps.bspline, x.cell, x.first,
             y.taps.where, y.taps.cubic, y.taps.bspline, y.cell, y.first,
             tiles, np.array([rows[0], columns[0]], np.int32), self.fine,
             self.x_base, self.y_base, self.x_plain, self.y_plain, 1.0, weight,
         )  # fmt: skip
         if not matters:
             return
-        samples = np.ascontiguousarray(self.start[first:last, begin:end])
+        values[:] = self.start[first:last, begin:end]
         _fit.solve(
             weight,
             self.x_base[columns[0] : columns[1]] - np.int32(begin), self.y_base[rows[0] : rows[1]] - np.int32(first),
             self.kernel, np.ascontiguousarray(self.photo[rows[0] : rows[1], columns[0] : columns[1]]),
-            self.hold, _STEPS, samples, np.empty((3, *samples.shape)), np.empty((2, *shape)),
+            self.hold, _STEPS, values, steps, seen,
         )  # fmt: skip
-        out[top:bottom, left:right] = samples[top - first : bottom - first, left - begin : right - begin]
+        out[top:bottom, left:right] = values[top - first : bottom - first, left - begin : right - begin]
 
 
 def _crowds(edges: EdgeList, width: int, height: int) -> npt.NDArray[np.int64]:

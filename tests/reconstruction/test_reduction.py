@@ -4,7 +4,15 @@ import numpy as np
 import pytest
 
 from penink_cli.model import EdgeList
+from penink_cli.reconstruction import _banded, _fit, _rows
+from penink_cli.reconstruction.enlarge import reconstruct
+from penink_cli.reconstruction.fit import fit_samples
 from penink_cli.reconstruction.reduction import reduce
+from tests.reconstruction.arrangements import comb, random_edges, spiral, star
+
+
+def test_the_kernels_are_compiled():
+    assert all(kernel.COMPILED for kernel in (_banded, _fit, _rows))
 
 
 @pytest.mark.parametrize("x", [14.0, 14.5, 16.0, 17.3])
@@ -38,11 +46,33 @@ def test_the_fit_is_the_same_for_any_number_of_threads():
     assert np.array_equal(one, two) and np.array_equal(one, five)
 
 
+@pytest.mark.parametrize(
+    "edges",
+    [
+        random_edges(np.random.default_rng(5), 96, 80, 60, length=12.0),
+        star(96, 80, 41.0, 39.0, 9, 30.0),
+        spiral(96, 80, 3.0, 8.0),
+        comb(96, 80, 30, 2.6),
+    ],
+)
+@pytest.mark.parametrize("size", [(24, 20), (37, 31)])
+def test_the_matrix_of_the_fit_is_the_reconstruction(edges, size, monkeypatch):
+    blocks = []
+    monkeypatch.setattr(_fit, "solve", lambda *arguments: blocks.append([np.array(part) for part in arguments]))
+    samples = np.random.default_rng(6).random(size[::-1])
+    fit_samples(np.zeros((80, 96), np.float32), edges, samples, 0.5, threads=1)
+    assert len(blocks) == 1
+    weight, columns, rows = blocks[0][:3]
+    five = np.arange(5)
+    touched = samples[rows[:, None, None, None] + five[:, None], columns[:, None, None] + five]
+    pixels = (weight.reshape(80, 96, 5, 5) * touched).sum(axis=(2, 3))
+    expected = reconstruct(samples, edges, 192, 160).reshape(80, 2, 96, 2).mean(axis=(1, 3))
+    assert np.abs(pixels - expected).max() < 1e-4
+
+
 def test_the_fit_undoes_what_the_camera_did():
     # A blurred step, sampled on a grid that has no sample on the blur's own scale.
     from scipy.ndimage import gaussian_filter
-
-    from penink_cli.reconstruction.enlarge import reconstruct
 
     sharp = np.where(np.arange(64) < 29.0, 0.2, 0.8) * np.ones((48, 1))
     photo = gaussian_filter(sharp, 0.9).astype(np.float32)

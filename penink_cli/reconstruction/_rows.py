@@ -1,0 +1,228 @@
+# cython: language_level=3, boundscheck=False, wraparound=False, cdivision=True
+"""Compiled: the reconstruction as a matrix, as it is linear in the samples while the edges stay. See fit.py.
+
+A row stands for a pixel, the mean of a few points, and holds the weights of the 5 × 5 samples that it depends on:
+those of plain convolution, changed where the points of a tile do not see all of their samples alike.
+"""
+
+import cython
+from cython.cimports.penink_cli.reconstruction._desk import Desk
+from cython.cimports.penink_cli.reconstruction._lanes import Four, fill
+from cython.cimports.penink_cli.reconstruction._shade import attenuate
+from cython.cimports.penink_cli.reconstruction._tile import Tile
+
+COMPILED = cython.compiled
+
+T1 = cython.declare(cython.float, 0.5)  # below this sum of cubic weights the B-spline is blended in
+T2 = cython.declare(cython.float, 1e-4)  # below this sum of B-spline weights plain convolution is faded in
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def _smooth(t: cython.float) -> cython.float:
+    """S(t) = 3t² − 2t³, clamped."""
+    return 0.0 if t <= 0.0 else (1.0 if t >= 1.0 else t * t * (3.0 - 2.0 * t))
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def _shade(tile: Tile, desk: Desk, radius: cython.double) -> cython.void:
+    """Find what the points of a tile that `see` has looked at do not see, and how far it is attenuated."""
+    k: cython.int
+    u: cython.float
+    same: cython.bint = True
+    ux: cython.p_float = cython.cast(cython.p_float, desk.ux)
+    uy: cython.pointer[Four] = cython.cast(cython.pointer[Four], desk.uy)
+    for k in range(8):
+        u = cython.cast(cython.float, (tile.px[min(k, tile.nx - 1)] - tile.cx) / radius)
+        same &= ux[k] == u
+        ux[k] = u
+        u = cython.cast(cython.float, (tile.py[min(k, tile.ny - 1)] - tile.cy) / radius)
+        same &= cython.cast(cython.p_float, uy + k)[0] == u
+        fill(uy + k, u)
+    if not same:
+        desk.known = 0
+    attenuate(cython.cast(cython.pointer[Four], desk.bits), desk, tile, radius)
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def _change(
+    desk: Desk,
+    r: cython.int,
+    xc: cython.p_float,
+    xb: cython.p_float,
+    yc: cython.p_double,
+    yb: cython.p_double,
+    out: cython.p_float,
+) -> cython.void:
+    """By what equation 5's weights of the 16 samples (outer) differ from plain ones at the 8 points of row r (inner).
+
+    xc, xb: (4, 8) weights of each column of samples at the points; yc, yb: (4,) of each row of samples.
+    """
+    s: cython.int
+    c: cython.int
+    y: cython.float
+    omega: cython.float
+    fade: cython.float
+    least: cython.float = 1.0
+    source: cython.p_float
+    alpha = cython.declare(cython.float[128])
+    cubic = cython.declare(cython.float[128])
+    spline = cython.declare(cython.float[128])
+    by_cubic = cython.declare(cython.float[8])
+    by_spline = cython.declare(cython.float[8])
+    across = cython.declare(cython.float[8])
+    for c in range(8):
+        by_cubic[c] = by_spline[c] = 0.0
+    for s in range(16):
+        y = 0.0 if (desk.shaded[r] >> s) & 1 else 1.0
+        for c in range(8):
+            alpha[8 * s + c] = y
+        if (desk.faded[r] >> s) & 1:
+            source = cython.cast(cython.p_float, desk.alpha) + 64 * s + 8 * r
+            for c in range(8):
+                alpha[8 * s + c] = source[c]
+        y = cython.cast(cython.float, yc[s >> 2])
+        for c in range(8):
+            cubic[8 * s + c] = y * xc[8 * (s & 3) + c]
+            by_cubic[c] += alpha[8 * s + c] * cubic[8 * s + c]
+    for c in range(8):
+        least = min(least, by_cubic[c])
+    if least >= T1:
+        for c in range(8):
+            by_cubic[c] = 1.0 / by_cubic[c]
+        for s in range(16):
+            for c in range(8):
+                out[8 * s + c] = cubic[8 * s + c] * (alpha[8 * s + c] * by_cubic[c] - 1.0)
+        return
+    for s in range(16):
+        y = cython.cast(cython.float, yb[s >> 2])
+        for c in range(8):
+            spline[8 * s + c] = y * xb[8 * (s & 3) + c]
+            by_spline[c] += alpha[8 * s + c] * spline[8 * s + c]
+    for c in range(8):
+        omega = _smooth(by_cubic[c] / T1)
+        fade = 1.0 - _smooth(by_spline[c] / T2)
+        y = omega * by_cubic[c] + (1.0 - omega) * by_spline[c]
+        y = (1.0 - fade) / y if y > 0.0 else 0.0
+        by_cubic[c] = omega * y
+        by_spline[c] = (1.0 - omega) * y
+        across[c] = fade - 1.0
+    for s in range(16):
+        for c in range(8):
+            out[8 * s + c] = (
+                cubic[8 * s + c] * (alpha[8 * s + c] * by_cubic[c] + across[c])
+                + alpha[8 * s + c] * by_spline[c] * spline[8 * s + c]
+            )
+
+
+def rows(
+    tile: Tile,
+    desk: Desk,
+    x: cython.double[::1],
+    xc: cython.double[:, ::1],
+    xb: cython.double[:, ::1],
+    x_cell: cython.int[::1],
+    x_begin: cython.int[::1],
+    y: cython.double[::1],
+    yc: cython.double[:, ::1],
+    yb: cython.double[:, ::1],
+    y_cell: cython.int[::1],
+    y_begin: cython.int[::1],
+    tiles: cython.int[::1],
+    pixels: cython.int[::1],
+    fine: cython.int,
+    x_base: cython.int[::1],
+    y_base: cython.int[::1],
+    x_plain: cython.float[:, ::1],
+    y_plain: cython.float[:, ::1],
+    radius: cython.double,
+    weight: cython.float[:, :, ::1],
+) -> cython.bint:
+    """Fill the rows of some pixels, each the mean of fine × fine points. True if an edge matters.
+
+    desk: of single numbers. x …, y …: of all points along each axis, as in lattice.Axis. tiles: (4,) first and
+    last + 1 tile down and across. pixels: (2,) row and column of the block's first pixel. x_base, y_base: first
+    sample that each pixel of an axis depends on; x_plain, y_plain: (n, 5) weights of plain convolution from there on.
+    weight: (rows, columns, 25) filled: 5 × 5 samples from the bases on.
+    """
+    a: cython.int
+    b: cython.int
+    r: cython.int
+    c: cython.int
+    i: cython.int
+    j: cython.int
+    k: cython.int
+    s: cython.int
+    nx: cython.int
+    ny: cython.int
+    py: cython.int
+    px: cython.int
+    at_x: cython.int
+    at_y: cython.int
+    v: cython.float
+    w: cython.p_float
+    matters: cython.bint = False
+    share: cython.float = 1.0 / (fine * fine)
+    last_x: cython.int = tile.scene.width - 1
+    last_y: cython.int = tile.scene.height - 1
+    columns_c = cython.declare(cython.float[32])
+    columns_b = cython.declare(cython.float[32])
+    change = cython.declare(cython.float[128])
+    pixel = cython.declare(cython.int[8])
+    place = cython.declare(cython.int[32])
+    down = cython.declare(cython.int[4])
+    with cython.nogil:
+        for py in range(weight.shape[0]):
+            for px in range(weight.shape[1]):
+                w = cython.address(weight[py, px, 0])
+                for i in range(5):
+                    v = y_plain[pixels[0] + py, i]
+                    for j in range(5):
+                        w[5 * i + j] = v * x_plain[pixels[1] + px, j]
+        for a in range(tiles[0], tiles[1]):
+            at_y = y_begin[a]
+            ny = y_begin[a + 1] - at_y
+            tile.place_in_row(y_cell[a], cython.address(y[at_y]), ny)
+            for b in range(tiles[2], tiles[3]):
+                if tile.scene.empty_around(x_cell[b], y_cell[a]):
+                    continue
+                at_x = x_begin[b]
+                nx = x_begin[b + 1] - at_x
+                tile.place(x_cell[b], cython.address(x[at_x]), nx)
+                if not tile.see():
+                    continue
+                matters = True
+                _shade(tile, desk, radius)
+                for c in range(8):
+                    k = at_x + min(c, nx - 1)
+                    pixel[c] = k // fine - pixels[1]
+                    for j in range(4):
+                        columns_c[8 * j + c] = cython.cast(cython.float, xc[k, j])
+                        columns_b[8 * j + c] = cython.cast(cython.float, xb[k, j])
+                        place[4 * c + j] = min(last_x, max(0, x_cell[b] - 1 + j)) - x_base[k // fine]
+                for r in range(ny):
+                    k = at_y + r
+                    py = k // fine - pixels[0]
+                    if py < 0 or py >= weight.shape[0]:
+                        continue
+                    for i in range(4):
+                        down[i] = 5 * (min(last_y, max(0, y_cell[a] - 1 + i)) - y_base[k // fine])
+                    _change(desk, r, columns_c, columns_b, cython.address(yc[k, 0]), cython.address(yb[k, 0]), change)
+                    for c in range(nx):
+                        px = pixel[c]
+                        if px < 0 or px >= weight.shape[1]:
+                            continue
+                        w = cython.address(weight[py, px, 0])
+                        for s in range(16):
+                            w[down[s >> 2] + place[4 * c + (s & 3)]] += share * change[8 * s + c]
+    return matters
+
+
+def clear(tile: Tile, x0: cython.double, y0: cython.double, x1: cython.double, y1: cython.double) -> cython.bint:
+    """Whether no edge comes near the rectangle (sample units)."""
+    return tile.scene.clear(x0, y0, x1, y1)
