@@ -21,20 +21,20 @@ def _see(
     q: cython.Py_ssize_t
     i: cython.Py_ssize_t
     j: cython.Py_ssize_t
-    high: cython.Py_ssize_t = min(5, samples.shape[0])
-    wide: cython.Py_ssize_t = min(5, samples.shape[1])
     w: cython.p_float
     s: cython.p_float
-    total: cython.float
+    sums = cython.declare(cython.float[5])  # a column of samples each, which makes a vector of them
     for p in range(weight.shape[0]):
         for q in range(weight.shape[1]):
             w = cython.address(weight[p, q, 0])
-            total = 0.0
-            for i in range(high):
-                s = cython.address(samples[y_base[p] + i, x_base[q]])
-                for j in range(wide):
-                    total += w[5 * i + j] * s[j]
-            out[p, q] = total
+            s = cython.address(samples[y_base[p], x_base[q]])
+            for j in range(5):
+                sums[j] = 0.0
+            for i in range(5):
+                for j in range(5):
+                    sums[j] += w[5 * i + j] * s[j]
+                s += samples.shape[1]
+            out[p, q] = (sums[0] + sums[1]) + (sums[2] + sums[3]) + sums[4]
 
 
 @cython.cfunc
@@ -52,8 +52,6 @@ def _unsee(
     q: cython.Py_ssize_t
     i: cython.Py_ssize_t
     j: cython.Py_ssize_t
-    high: cython.Py_ssize_t = min(5, out.shape[0])
-    wide: cython.Py_ssize_t = min(5, out.shape[1])
     w: cython.p_float
     s: cython.p_float
     v: cython.float
@@ -61,11 +59,12 @@ def _unsee(
     for p in range(weight.shape[0]):
         for q in range(weight.shape[1]):
             w = cython.address(weight[p, q, 0])
+            s = cython.address(out[y_base[p], x_base[q]])
             v = pixels[p, q]
-            for i in range(high):
-                s = cython.address(out[y_base[p] + i, x_base[q]])
-                for j in range(wide):
+            for i in range(5):
+                for j in range(5):
                     s[j] += w[5 * i + j] * v
+                s += out.shape[1]
 
 
 @cython.cfunc
@@ -148,6 +147,7 @@ def solve(
 ) -> None:
     """Conjugate gradients for ‖B R s − photo‖² + hold ‖s − s₀‖² over one block, samples being s₀ and then s.
 
+    samples: at least 5 × 5; weight, x_base, y_base: as of `_rows.rows`, the bases counted from the first sample.
     room: (3, rows, columns) of samples; pixel_room: (2, rows, columns) of pixels; to work in.
     """
     i: cython.Py_ssize_t

@@ -198,7 +198,8 @@ class _Fit:
         rows, columns = _pixels(self.y_base, first, last, self.height), _pixels(self.x_base, begin, end, self.width)
         if rows[0] >= rows[1] or columns[0] >= columns[1]:
             return
-        pixels, samples = (rows[1] - rows[0], columns[1] - columns[0]), (last - first, end - begin)
+        pixels = rows[1] - rows[0], columns[1] - columns[0]
+        samples = max(_SPAN, last - first), max(_SPAN, end - begin)
         weight, values, steps, seen = hand.room((*pixels, _SPAN * _SPAN), samples, (3, *samples), (2, *pixels))
         x, y = self.x, self.y
         tiles = np.array([*_tiles(y, *rows, self.fine), *_tiles(x, *columns, self.fine)], np.int32)
@@ -210,7 +211,8 @@ class _Fit:
         )  # fmt: skip
         if not matters:
             return
-        values[:] = self.start[first:last, begin:end]
+        values[:] = 0
+        values[: last - first, : end - begin] = self.start[first:last, begin:end]
         _fit.solve(
             weight,
             self.x_base[columns[0] : columns[1]] - np.int32(begin), self.y_base[rows[0] : rows[1]] - np.int32(first),

@@ -36,6 +36,16 @@ def test_any_size():
     assert reduce(np.full((17, 23), 0.5), EdgeList(23, 17), 5, 3).shape == (3, 5)
 
 
+@pytest.mark.parametrize("size", [(2, 1), (2, 6), (4, 3), (7, 2)])
+def test_grids_of_fewer_samples_than_a_pixel_depends_on(size):
+    photo = np.where(np.arange(21) < 9, 0.25, 0.75) * np.ones((19, 1), np.float32)
+    edges = EdgeList(21, 19, np.array([[9.0, 0], [9.0, 19]]), np.array([[0, 1]]))
+    reduced = reduce(photo, edges, *size, photo=photo, fit="lsq", blur=0.0)
+    assert reduced.shape == size[::-1]
+    beyond = (np.arange(size[0]) + 0.5) * 21 / size[0] > 9
+    assert np.abs(reduced - np.where(beyond, 0.75, 0.25)).max() < 0.02
+
+
 def test_the_fit_is_the_same_for_any_number_of_threads():
     random = np.random.default_rng(7)
     photo = random.random((90, 120)).astype(np.float32)
