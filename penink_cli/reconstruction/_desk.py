@@ -3,57 +3,73 @@
 
 import cython
 from cython.cimports.libc.stdlib import free, malloc, realloc
-from cython.cimports.libc.string import memset
+from cython.cimports.libc.string import memcpy, memset
+from cython.cimports.penink_cli.reconstruction._lanes import has_avx2
 
 COMPILED = cython.compiled
 
-NUMBER = cython.declare(cython.size_t, cython.sizeof(cython.double))  # room for one, in floats too
-SPREAD = cython.declare(cython.size_t, 4 * cython.sizeof(cython.float))  # room for one that is in all lanes
+NUMBER = cython.declare(cython.Py_ssize_t, cython.sizeof(cython.double))  # room for one, in floats too
+LINE = cython.declare(cython.Py_ssize_t, 64)  # bytes of a cache line: no row of numbers lies across two
+PARTS = cython.declare(cython.Py_ssize_t, 256 * 8 + 2 * 8 + 2 * 32 + 2 * 32 + 32 * 64 + 16 + 2 * 16 * 64)  # numbers
 
 
 @cython.final
 @cython.cclass
 class Desk:
-    """Scratch of one thread, numbers in single or in double, aligned for the lanes they are computed in.
+    """Scratch of one thread, numbers in single or in double, aligned for any lanes they are computed in.
 
+    single: in floats rather than doubles. stored: the bytes of a number of output, eight where it is kept as it is.
+    measure, cover, fade, paint: the arithmetic, see `_fades` and `_sums`, which furnish a desk with it.
     bits: (256, 8) a byte as eight numbers, 0 or 1 for each bit.
-    ux: (8,) the columns of pixels, relative to the cell and in units of the radius. uy: (8,) the rows, spread.
+    ux, uy: (8,) the columns and rows of pixels, relative to the cell and in units of the radius.
     kx: (2, 4, 8) weights of each column of samples at the columns of pixels, cubic and B-spline.
-    ky: (2, 8, 4) those of each row of samples at the rows of pixels, spread.
+    ky: (2, 8, 4) those of each row of samples at the rows of pixels.
     weights: (2, 16, 8, 8) the products of those, for each sample at each pixel; known_weights: the sets of samples for
     which they are filled in. They stay while the pixels stand alike in their cells.
-    values: (16,) the samples. spread: (16,) those of them that are not seen by all, spread.
+    values: (16,) the samples.
     distance: (16, 8, 8) of each pixel from the samples −1 … 2 down and across the cell, in units of the radius.
     known: the set of those that are filled in; they stay likewise.
     alpha: (16, 8, 8) attenuation of a sample at each pixel.
-    nodes: (size, 8, 8) distance of each pixel from a node, FAR where it is hidden; node_mask: where it is seen.
-    bend, bend_length: (size,) the nodes next to one sample, and how far it is to them, spread.
-    shaded: for each row of pixels the set of samples that some of them do not see.
-    faded: those of them whose attenuation is not zero throughout the row. A number that is *spread* is in all lanes.
+    nodes: (size, 8, 8) distance of each pixel from a node, vast where it is hidden; node_mask: where it is seen.
+    bend, bend_length: (size,) the nodes next to one sample, and how far it is to them, in units of the radius.
+    shaded_rows: for each sample the set of rows in which some pixels do not see it, filled in by `cover` and `fade`.
+    faded_rows: those of them in which its attenuation is not zero throughout.
     """
 
-    def __init__(self, single: cython.bint):
+    def __init__(
+        self,
+        single: cython.bint,
+        stored: cython.int,
+        radius: cython.double,
+        only_b: cython.bint,
+        maxval: cython.double,
+    ):
         k: cython.int
         i: cython.int
+        self.single = single
+        self.stored = stored
+        # As the numbers that are compared with it have been: see `enlarge`.
+        self.radius = cython.cast(cython.float, radius) if single else radius
+        self.only_b = only_b
+        self.maxval = maxval
+        self.room = malloc(PARTS * NUMBER + 16 * LINE)
+        memset(self.room, 0, PARTS * NUMBER + 16 * LINE)
+        self.free_place = aligned(self.room)
+        self.bits = self.part(256 * 8)
+        self.ux = self.part(8)
+        self.uy = self.part(8)
+        self.kx = self.part(2 * 4 * 8)
+        self.ky = self.part(2 * 8 * 4)
+        self.weights = self.part(2 * 16 * 64)
+        self.values = self.part(16)
+        self.distance = self.part(16 * 64)
+        self.alpha = self.part(16 * 64)
         self.size = 32
-        self.bits = malloc(256 * 8 * NUMBER)
-        self.ux = malloc(8 * NUMBER)
-        self.uy = malloc(8 * SPREAD)
-        memset(self.ux, 0, 8 * NUMBER)
-        memset(self.uy, 0, 8 * SPREAD)
-        self.kx = malloc(2 * 4 * 8 * NUMBER)
-        self.ky = malloc(2 * 8 * 4 * SPREAD)
-        self.weights = malloc(2 * 16 * 64 * NUMBER)
-        self.values = malloc(16 * NUMBER)
-        memset(self.kx, 0, 2 * 4 * 8 * NUMBER)
-        memset(self.ky, 0, 2 * 8 * 4 * SPREAD)
-        self.spread = malloc(16 * SPREAD)
-        self.distance = malloc(16 * 64 * NUMBER)
-        self.alpha = malloc(16 * 64 * NUMBER)
-        self.nodes = malloc(self.size * 64 * NUMBER)
+        self.nodes_room = malloc(self.size * 64 * NUMBER + LINE)
+        self.nodes = aligned(self.nodes_room)
         self.node_mask = cython.cast(cython.p_ulonglong, malloc(self.size * cython.sizeof(cython.ulonglong)))
         self.bend = cython.cast(cython.p_int, malloc(self.size * cython.sizeof(cython.int)))
-        self.bend_length = malloc(self.size * SPREAD)
+        self.bend_length = cython.cast(cython.p_double, malloc(self.size * cython.sizeof(cython.double)))
         for k in range(256):
             for i in range(8):
                 if single:
@@ -62,20 +78,27 @@ class Desk:
                     cython.cast(cython.p_double, self.bits)[8 * k + i] = (k >> i) & 1
 
     def __dealloc__(self):
-        free(self.bits)
-        free(self.ux)
-        free(self.uy)
-        free(self.kx)
-        free(self.ky)
-        free(self.weights)
-        free(self.values)
-        free(self.spread)
-        free(self.distance)
-        free(self.alpha)
-        free(self.nodes)
+        free(self.room)
+        free(self.nodes_room)
         free(self.node_mask)
         free(self.bend)
         free(self.bend_length)
+
+    def rest(self):
+        """Do no arithmetic from now on; so the benchmarks tell how long everything else takes."""
+        self.measure = measure_nothing
+        self.cover = cover_nothing
+        self.fade = fade_nothing
+        self.paint = paint_nothing
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def part(self, numbers: cython.Py_ssize_t) -> cython.p_void:
+        """The next part of the room, for that many numbers."""
+        at: cython.p_char = self.free_place
+        self.free_place = cython.cast(cython.p_char, aligned(at + numbers * NUMBER))
+        return at
 
     @cython.cfunc
     @cython.nogil
@@ -83,14 +106,73 @@ class Desk:
     def another_node(self, seen: cython.ulonglong) -> cython.int:
         """Room for the distances to one more node, seen from some pixels; its place."""
         slot: cython.int = self.used
+        larger: cython.p_void
         if slot == self.size:
+            larger = malloc(2 * self.size * 64 * NUMBER + LINE)
+            memcpy(aligned(larger), self.nodes, self.size * 64 * NUMBER)
+            free(self.nodes_room)
+            self.nodes_room = larger
+            self.nodes = aligned(larger)
             self.size *= 2
-            self.nodes = realloc(self.nodes, self.size * 64 * NUMBER)
             self.node_mask = cython.cast(
                 cython.p_ulonglong, realloc(self.node_mask, self.size * cython.sizeof(cython.ulonglong))
             )
             self.bend = cython.cast(cython.p_int, realloc(self.bend, self.size * cython.sizeof(cython.int)))
-            self.bend_length = realloc(self.bend_length, self.size * SPREAD)
+            self.bend_length = cython.cast(
+                cython.p_double, realloc(self.bend_length, self.size * cython.sizeof(cython.double))
+            )
         self.node_mask[slot] = seen
         self.used = slot + 1
         return slot
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def aligned(place: cython.p_void) -> cython.p_char:
+    """The first line of the cache at or after a place."""
+    at: cython.size_t = cython.cast(cython.size_t, place)
+    return cython.cast(cython.p_char, (at + LINE - 1) // LINE * LINE)
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def measure_nothing(desk: Desk, slot: cython.int, ny: cython.int, x: cython.double, y: cython.double) -> cython.void:
+    """For a desk at rest."""
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def cover_nothing(desk: Desk, s: cython.int, hidden: cython.ulonglong, nx: cython.int, ny: cython.int) -> cython.void:
+    """For a desk at rest."""
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def fade_nothing(
+    desk: Desk,
+    s: cython.int,
+    hidden: cython.ulonglong,
+    bends: cython.int,
+    ny: cython.int,
+    down: cython.int,
+    across: cython.int,
+) -> cython.void:
+    """For a desk at rest."""
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def paint_nothing(
+    desk: Desk, samples: cython.int, nx: cython.int, ny: cython.int, out: cython.p_void, stride: cython.Py_ssize_t
+) -> cython.void:
+    """For a desk at rest."""
+
+
+def has_wide_lanes() -> bool:
+    """Whether the processor this runs on has AVX2."""
+    return has_avx2() != 0

@@ -1,8 +1,9 @@
-/* Numbers side by side, four floats or two doubles: what SSE2 and NEON compute at once.
+/* Numbers side by side: four floats, or as many floats or doubles as the machine computes at once.
  *
  * Left to itself the compiler vectorises the loops over the eight pixels of a row only in part, and keeps their sums in
  * memory. Arithmetic on these types is that of their numbers, each rounded as it would be alone, so the bytes of the
- * output do not depend on them. Where there is no SSE2 the loops say the same.
+ * output depend neither on them nor on how many there are: sixteen bytes with SSE2 and NEON, thirty-two with AVX2, for
+ * which a kernel is compiled a second time. Where there is neither the loops say the same.
  */
 #ifndef PENINK_LANES_H
 #define PENINK_LANES_H
@@ -10,130 +11,231 @@
 #include <math.h>
 #include <string.h>
 
-typedef float Four __attribute__((vector_size(16), may_alias));
-typedef double Two __attribute__((vector_size(16), may_alias));
-
-#ifdef __SSE2__
+#ifdef __AVX2__
+#define LANES 32
+#else
+#define LANES 16
+#endif
+#if defined(__x86_64__) && defined(__SSE2__) && defined(__GNUC__)
+#include <immintrin.h>
+#define MAY_HAVE_AVX2
+#elif defined(__SSE2__)
 #include <emmintrin.h>
 #endif
 
-static inline Four all_four(float x) { return (Four){x, x, x, x}; }
-static inline Two all_two(double x) { return (Two){x, x}; }
-static inline Four four_at(const float *x) { Four v; memcpy(&v, x, sizeof v); return v; }
+typedef float Four __attribute__((vector_size(16), may_alias));
+typedef float Floats __attribute__((vector_size(LANES), may_alias));
+typedef double Doubles __attribute__((vector_size(LANES), may_alias));
 
-/* Number i of all, in every place. */
-static inline Four lane_four(Four v, int i) { return all_four(v[i]); }
-static inline Two lane_two(Two v, int i) { return all_two(v[i]); }
+enum {
+    FLOATS = LANES / sizeof(float), /* in one vector */
+    DOUBLES = LANES / sizeof(double),
+    ROW_OF_FLOATS = 8 / FLOATS, /* vectors in a row of eight pixels */
+    ROW_OF_DOUBLES = 8 / DOUBLES,
+    FOUR_DOUBLES = 4 / DOUBLES, /* vectors that hold four */
+    PACK = 4 * FLOATS /* floats that make a vector of bytes */
+};
+
+#define EACH(v) for (unsigned i = 0; i < sizeof(v) / sizeof((v)[0]); i++)
+
+/* Whether the processor this runs on has AVX2. */
+static inline int has_avx2(void) {
+#ifdef MAY_HAVE_AVX2
+    return __builtin_cpu_supports("avx2") != 0;
+#else
+    return 0;
+#endif
+}
+
+static inline Four all_four(float x) { return (Four){x, x, x, x}; }
+static inline Four four_at(const float *x) { Four v; memcpy(&v, x, sizeof v); return v; }
 
 #ifdef __SSE2__
 
-static inline Four root_four(Four v) { return (Four)_mm_sqrt_ps((__m128)v); }
-static inline Two root_two(Two v) { return (Two)_mm_sqrt_pd((__m128d)v); }
 static inline Four less_four(Four v, Four w) { return (Four)_mm_min_ps((__m128)v, (__m128)w); }
-static inline Two less_two(Two v, Two w) { return (Two)_mm_min_pd((__m128d)v, (__m128d)w); }
 static inline Four more_four(Four v, Four w) { return (Four)_mm_max_ps((__m128)v, (__m128)w); }
-static inline Two more_two(Two v, Two w) { return (Two)_mm_max_pd((__m128d)v, (__m128d)w); }
 static inline int above_four(Four v, Four w) { return _mm_movemask_ps(_mm_cmpgt_ps((__m128)v, (__m128)w)); }
-static inline int above_two(Two v, Two w) { return _mm_movemask_pd(_mm_cmpgt_pd((__m128d)v, (__m128d)w)); }
 
 #else
 
-#define EACH(v) for (unsigned i = 0; i < sizeof(v) / sizeof((v)[0]); i++)
-static inline Four root_four(Four v) { EACH(v) v[i] = sqrtf(v[i]); return v; }
-static inline Two root_two(Two v) { EACH(v) v[i] = sqrt(v[i]); return v; }
 static inline Four less_four(Four v, Four w) { EACH(v) v[i] = v[i] < w[i] ? v[i] : w[i]; return v; }
-static inline Two less_two(Two v, Two w) { EACH(v) v[i] = v[i] < w[i] ? v[i] : w[i]; return v; }
 static inline Four more_four(Four v, Four w) { EACH(v) v[i] = v[i] > w[i] ? v[i] : w[i]; return v; }
-static inline Two more_two(Two v, Two w) { EACH(v) v[i] = v[i] > w[i] ? v[i] : w[i]; return v; }
 static inline int above_four(Four v, Four w) { int m = 0; EACH(v) m |= (v[i] > w[i]) << i; return m; }
-static inline int above_two(Two v, Two w) { int m = 0; EACH(v) m |= (v[i] > w[i]) << i; return m; }
+
+#endif
+
+#ifdef __AVX2__
+
+static inline Floats all_floats(float x) { return (Floats)_mm256_set1_ps(x); }
+static inline Doubles all_doubles(double x) { return (Doubles)_mm256_set1_pd(x); }
+static inline Floats root_floats(Floats v) { return (Floats)_mm256_sqrt_ps((__m256)v); }
+static inline Doubles root_doubles(Doubles v) { return (Doubles)_mm256_sqrt_pd((__m256d)v); }
+static inline Floats less_floats(Floats v, Floats w) { return (Floats)_mm256_min_ps((__m256)v, (__m256)w); }
+static inline Doubles less_doubles(Doubles v, Doubles w) { return (Doubles)_mm256_min_pd((__m256d)v, (__m256d)w); }
+static inline Floats more_floats(Floats v, Floats w) { return (Floats)_mm256_max_ps((__m256)v, (__m256)w); }
+static inline Doubles more_doubles(Doubles v, Doubles w) { return (Doubles)_mm256_max_pd((__m256d)v, (__m256d)w); }
+static inline int above_floats(Floats v, Floats w) {
+    return _mm256_movemask_ps(_mm256_cmp_ps((__m256)v, (__m256)w, _CMP_GT_OQ));
+}
+static inline int above_doubles(Doubles v, Doubles w) {
+    return _mm256_movemask_pd(_mm256_cmp_pd((__m256d)v, (__m256d)w, _CMP_GT_OQ));
+}
+
+#else
+
+static inline Floats all_floats(float x) { return all_four(x); }
+static inline Doubles all_doubles(double x) { return (Doubles){x, x}; }
+static inline Floats less_floats(Floats v, Floats w) { return less_four(v, w); }
+static inline Floats more_floats(Floats v, Floats w) { return more_four(v, w); }
+static inline int above_floats(Floats v, Floats w) { return above_four(v, w); }
+#ifdef __SSE2__
+static inline Floats root_floats(Floats v) { return (Floats)_mm_sqrt_ps((__m128)v); }
+static inline Doubles root_doubles(Doubles v) { return (Doubles)_mm_sqrt_pd((__m128d)v); }
+static inline Doubles less_doubles(Doubles v, Doubles w) { return (Doubles)_mm_min_pd((__m128d)v, (__m128d)w); }
+static inline Doubles more_doubles(Doubles v, Doubles w) { return (Doubles)_mm_max_pd((__m128d)v, (__m128d)w); }
+static inline int above_doubles(Doubles v, Doubles w) {
+    return _mm_movemask_pd(_mm_cmpgt_pd((__m128d)v, (__m128d)w));
+}
+#else
+static inline Floats root_floats(Floats v) { EACH(v) v[i] = sqrtf(v[i]); return v; }
+static inline Doubles root_doubles(Doubles v) { EACH(v) v[i] = sqrt(v[i]); return v; }
+static inline Doubles less_doubles(Doubles v, Doubles w) { EACH(v) v[i] = v[i] < w[i] ? v[i] : w[i]; return v; }
+static inline Doubles more_doubles(Doubles v, Doubles w) { EACH(v) v[i] = v[i] > w[i] ? v[i] : w[i]; return v; }
+static inline int above_doubles(Doubles v, Doubles w) { int m = 0; EACH(v) m |= (v[i] > w[i]) << i; return m; }
+#endif
 
 #endif
 
 /* The numbers of v where those of t are positive, else those of w. */
-static inline Four chosen_four(Four t, Four v, Four w) {
-    for (int i = 0; i < 4; i++) v[i] = t[i] > 0 ? v[i] : w[i];
+static inline Floats chosen_floats(Floats t, Floats v, Floats w) {
+    EACH(v) v[i] = t[i] > 0 ? v[i] : w[i];
     return v;
 }
-static inline Two chosen_two(Two t, Two v, Two w) {
-    for (int i = 0; i < 2; i++) v[i] = t[i] > 0 ? v[i] : w[i];
+static inline Doubles chosen_doubles(Doubles t, Doubles v, Doubles w) {
+    EACH(v) v[i] = t[i] > 0 ? v[i] : w[i];
     return v;
 }
 
 /* The numbers without their sign. */
 static inline Four size_four(Four v) { return more_four(v, -v); }
 
-/* Which numbers, −1 … 9, are closer than so much to a whole one. */
-static inline int close_four(Four v, float limit) {
-#ifdef __SSE2__
-    Four off = v - (Four)_mm_cvtepi32_ps(_mm_cvtps_epi32((__m128)v));
-#else
-    Four off;
-    EACH(v) off[i] = v[i] - rintf(v[i]);
-#endif
-    return above_four(all_four(limit), size_four(off));
-}
-
-/* A tile of 8 × 8 pixels, pixel (r, c) at bit 8 r + c: those with c > v_r, the eight v above −1 and below 9. */
-static inline unsigned long long beyond_in_rows(Four low, Four high) {
-#ifdef __SSE2__
-    const __m128i c = _mm_setr_epi8(0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3, 4, 5, 6, 7);
-    __m128i a = _mm_cvttps_epi32((__m128)(low + all_four(1))), b = _mm_cvttps_epi32((__m128)(high + all_four(1)));
-    a = _mm_packs_epi32(a, b);
-    a = _mm_packs_epi16(a, a);
-    a = _mm_unpacklo_epi8(a, a);
-    b = _mm_unpackhi_epi16(a, a);
-    a = _mm_unpacklo_epi16(a, a);
-    unsigned m0 = _mm_movemask_epi8(_mm_cmpgt_epi8(_mm_unpacklo_epi32(a, a), c));
-    unsigned m1 = _mm_movemask_epi8(_mm_cmpgt_epi8(_mm_unpackhi_epi32(a, a), c));
-    unsigned m2 = _mm_movemask_epi8(_mm_cmpgt_epi8(_mm_unpacklo_epi32(b, b), c));
-    unsigned m3 = _mm_movemask_epi8(_mm_cmpgt_epi8(_mm_unpackhi_epi32(b, b), c));
-    return ~((unsigned long long)(m2 | m3 << 16) << 32 | (m0 | m1 << 16));
-#else
-    unsigned long long m = 0;
-    for (int r = 0; r < 8; r++)
-        m |= (unsigned long long)(0xFF & 0xFF << (int)((r < 4 ? low[r] : high[r - 4]) + 1)) << 8 * r;
-    return m;
-#endif
-}
-
-/* Likewise those with r > v_c. */
-static inline unsigned long long beyond_in_columns(Four low, Four high) {
-#ifdef __SSE2__
-    const __m128i two = _mm_set1_epi8(2);
-    __m128i r = _mm_setr_epi8(0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1);
-    __m128i a = _mm_cvttps_epi32((__m128)(low + all_four(1))), b = _mm_cvttps_epi32((__m128)(high + all_four(1)));
-    a = _mm_packs_epi32(a, b);
-    a = _mm_packs_epi16(a, a);
-    unsigned m0 = _mm_movemask_epi8(_mm_cmpgt_epi8(a, r));
-    r = _mm_add_epi8(r, two);
-    unsigned m1 = _mm_movemask_epi8(_mm_cmpgt_epi8(a, r));
-    r = _mm_add_epi8(r, two);
-    unsigned m2 = _mm_movemask_epi8(_mm_cmpgt_epi8(a, r));
-    r = _mm_add_epi8(r, two);
-    unsigned m3 = _mm_movemask_epi8(_mm_cmpgt_epi8(a, r));
-    return ~((unsigned long long)(m2 | m3 << 16) << 32 | (m0 | m1 << 16));
-#else
-    unsigned long long m = 0;
-    for (int c = 0; c < 8; c++) {
-        int first = (int)((c < 4 ? low[c] : high[c - 4]) + 1);
-        m |= first < 8 ? 0x0101010101010101ULL << (8 * first + c) : 0;
+#ifdef MAY_HAVE_AVX2
+/* `below_zero` for processors with AVX2, whatever else is compiled for: half the instructions. */
+__attribute__((target("avx2"))) static unsigned long long below_zero_wide(float v, float x, float y, float *least) {
+    const __m256 sign = _mm256_set1_ps(-0.0f);
+    const __m256i order = _mm256_setr_epi32(0, 4, 1, 5, 2, 6, 3, 7);
+    const __m256 ramp = _mm256_setr_ps(0, 1, 2, 3, 4, 5, 6, 7);
+    const __m256 down = _mm256_set1_ps(2 * y);
+    const __m256 top = _mm256_add_ps(_mm256_set1_ps(v), _mm256_mul_ps(ramp, _mm256_set1_ps(x)));
+    __m256 even = top, odd = _mm256_add_ps(top, _mm256_set1_ps(y));
+    __m256 closest = _mm256_andnot_ps(sign, even);
+    __m256i pairs[4];
+    for (int r = 0; r < 4; r++) {
+        closest = _mm256_min_ps(closest, _mm256_andnot_ps(sign, even));
+        closest = _mm256_min_ps(closest, _mm256_andnot_ps(sign, odd));
+        pairs[r] = _mm256_packs_epi32(_mm256_castps_si256(even), _mm256_castps_si256(odd)); /* keeps the signs */
+        even = _mm256_add_ps(even, down);
+        odd = _mm256_add_ps(odd, down);
     }
-    return m;
+    const __m256i low = _mm256_permutevar8x32_epi32(_mm256_packs_epi16(pairs[0], pairs[1]), order);
+    const __m256i high = _mm256_permutevar8x32_epi32(_mm256_packs_epi16(pairs[2], pairs[3]), order);
+    __m128 four = _mm_min_ps(_mm256_castps256_ps128(closest), _mm256_extractf128_ps(closest, 1));
+    four = _mm_min_ps(four, _mm_movehl_ps(four, four));
+    *least = _mm_cvtss_f32(_mm_min_ss(four, _mm_shuffle_ps(four, four, 1)));
+    return (unsigned)_mm256_movemask_epi8(low) | (unsigned long long)(unsigned)_mm256_movemask_epi8(high) << 32;
+}
 #endif
+
+/* A tile of 8 × 8 pixels, pixel (r, c) at bit 8 r + c: those where v + c x + r y is negative.
+ *
+ * least: how close to zero that comes anywhere; either is off by a few roundings. wide: whether there is AVX2.
+ */
+static inline unsigned long long below_zero(float v, float x, float y, float *least, int wide) {
+    unsigned long long m = 0;
+#ifdef MAY_HAVE_AVX2
+    if (wide) return below_zero_wide(v, x, y, least);
+#endif
+#ifdef __SSE2__
+    const Four ramp = {0, 1, 2, 3};
+    const Four left = all_four(v) + ramp * all_four(x), right = left + all_four(4 * x);
+    const __m128 sign = _mm_set1_ps(-0.0f);
+    __m128 closest = _mm_set1_ps(INFINITY);
+    __m128i both[8];
+    for (int r = 0; r < 8; r++) {
+        const Four down = all_four(r * y), a = left + down, b = right + down;
+        closest = _mm_min_ps(closest, _mm_min_ps(_mm_andnot_ps(sign, (__m128)a), _mm_andnot_ps(sign, (__m128)b)));
+        both[r] = _mm_packs_epi32((__m128i)a, (__m128i)b); /* keeps the signs */
+    }
+    for (int r = 6; r >= 0; r -= 2) m = m << 16 | (unsigned)_mm_movemask_epi8(_mm_packs_epi16(both[r], both[r + 1]));
+    closest = _mm_min_ps(closest, _mm_movehl_ps(closest, closest));
+    *least = _mm_cvtss_f32(_mm_min_ss(closest, _mm_shuffle_ps(closest, closest, 1)));
+#else
+    (void)wide;
+    *least = INFINITY;
+    for (int k = 0; k < 64; k++) {
+        const float at = v + (k & 7) * x + (k >> 3) * y;
+        m |= (unsigned long long)(at < 0) << k;
+        *least = fabsf(at) < *least ? fabsf(at) : *least;
+    }
+#endif
+    return m;
 }
 
 /* Eight numbers below 256, rounded half up and stored as bytes, negative ones as 0. */
-static inline void keep_bytes(Four low, Four high, unsigned char *out) {
+static inline void keep_bytes(const Floats *v, unsigned char *out) {
 #ifdef __SSE2__
-    __m128i a = _mm_cvttps_epi32((__m128)(low + all_four(0.5f)));
-    __m128i b = _mm_cvttps_epi32((__m128)(high + all_four(0.5f)));
+#ifdef __AVX2__
+    __m256i both = _mm256_cvttps_epi32((__m256)(v[0] + all_floats(0.5f)));
+    __m128i a = _mm256_castsi256_si128(both), b = _mm256_extracti128_si256(both, 1);
+#else
+    __m128i a = _mm_cvttps_epi32((__m128)(v[0] + all_four(0.5f)));
+    __m128i b = _mm_cvttps_epi32((__m128)(v[1] + all_four(0.5f)));
+#endif
     a = _mm_packs_epi32(a, b);
     _mm_storel_epi64((__m128i *)out, _mm_packus_epi16(a, a));
 #else
     for (int i = 0; i < 8; i++) {
-        float v = (i < 4 ? low[i] : high[i - 4]) + 0.5f;
-        out[i] = v > 0 ? (unsigned char)v : 0;
+        float x = ((const float *)v)[i] + 0.5f;
+        out[i] = x > 0 ? (unsigned char)x : 0;
+    }
+#endif
+}
+
+/* Four vectors, numbers of any size, each rounded half up and stored as a byte 0 … most. */
+static inline void pack_bytes(const Floats *v, unsigned char most, unsigned char *out) {
+#ifdef __AVX2__
+    const __m256 half = _mm256_set1_ps(0.5f);
+    const __m256i order = _mm256_setr_epi32(0, 4, 1, 5, 2, 6, 3, 7);
+    __m256i a = _mm256_packs_epi32(_mm256_cvttps_epi32(v[0] + half), _mm256_cvttps_epi32(v[1] + half));
+    __m256i b = _mm256_packs_epi32(_mm256_cvttps_epi32(v[2] + half), _mm256_cvttps_epi32(v[3] + half));
+    a = _mm256_permutevar8x32_epi32(_mm256_packus_epi16(a, b), order);
+    _mm256_storeu_si256((__m256i *)out, _mm256_min_epu8(a, _mm256_set1_epi8((char)most)));
+#elif defined(__SSE2__)
+    const __m128 half = _mm_set1_ps(0.5f);
+    __m128i a = _mm_packs_epi32(_mm_cvttps_epi32(v[0] + half), _mm_cvttps_epi32(v[1] + half));
+    __m128i b = _mm_packs_epi32(_mm_cvttps_epi32(v[2] + half), _mm_cvttps_epi32(v[3] + half));
+    _mm_storeu_si128((__m128i *)out, _mm_min_epu8(_mm_packus_epi16(a, b), _mm_set1_epi8((char)most)));
+#else
+    for (int i = 0; i < PACK; i++) {
+        float x = ((const float *)v)[i] + 0.5f;
+        out[i] = x > most ? most : x > 0 ? (unsigned char)x : 0;
+    }
+#endif
+}
+
+/* Sixteen sets of eight the other way round: eight sets of sixteen. */
+static inline void turn_sets(const unsigned char *sets, int *out) {
+#ifdef __SSE2__
+    __m128i v;
+    memcpy(&v, sets, sizeof v);
+    for (int r = 7; r >= 0; r--) {
+        out[r] = _mm_movemask_epi8(v);
+        v = _mm_add_epi8(v, v);
+    }
+#else
+    for (int r = 0; r < 8; r++) {
+        out[r] = 0;
+        for (int s = 0; s < 16; s++) out[r] |= (sets[s] >> r & 1) << s;
     }
 #endif
 }

@@ -1,75 +1,90 @@
 from libc.string cimport memcpy
 
 cdef extern from "_lanes.h" nogil:
-    ctypedef float Four  # four floats, or
-    ctypedef double Two  # two doubles: these are arrays, but arithmetic is written as on their numbers
+    enum:
+        FLOATS
+        DOUBLES
+        ROW_OF_FLOATS
+        ROW_OF_DOUBLES
+        FOUR_DOUBLES
+        PACK
+    ctypedef float Four  # four floats, or as many as
+    ctypedef float Floats  # the machine computes at once,
+    ctypedef double Doubles  # or doubles: these are arrays, but arithmetic is written as on their numbers
+    int has_avx2()
     Four all_four(float x)
-    Two all_two(double x)
+    Floats all_floats(float x)
+    Doubles all_doubles(double x)
     Four four_at(const float* x)
-    Four lane_four(Four v, int i)
-    Two lane_two(Two v, int i)
-    Four root_four(Four v)
-    Two root_two(Two v)
     Four less_four(Four v, Four w)
-    Two less_two(Two v, Two w)
     Four more_four(Four v, Four w)
-    Two more_two(Two v, Two w)
-    Four chosen_four(Four t, Four v, Four w)
-    Two chosen_two(Two t, Two v, Two w)
     Four size_four(Four v)
     int above_four(Four v, Four w)
-    int above_two(Two v, Two w)
-    int close_four(Four v, float limit)
-    unsigned long long beyond_in_rows(Four low, Four high)
-    unsigned long long beyond_in_columns(Four low, Four high)
-    void keep_bytes(Four low, Four high, unsigned char* out)
+    Floats root_floats(Floats v)
+    Doubles root_doubles(Doubles v)
+    Floats less_floats(Floats v, Floats w)
+    Doubles less_doubles(Doubles v, Doubles w)
+    Floats more_floats(Floats v, Floats w)
+    Doubles more_doubles(Doubles v, Doubles w)
+    int above_floats(Floats v, Floats w)
+    int above_doubles(Doubles v, Doubles w)
+    Floats chosen_floats(Floats t, Floats v, Floats w)
+    Doubles chosen_doubles(Doubles t, Doubles v, Doubles w)
+    unsigned long long below_zero(float v, float x, float y, float* least, int wide)
+    void keep_bytes(const Floats* v, unsigned char* out)
+    void pack_bytes(const Floats* v, unsigned char most, unsigned char* out)
+    void turn_sets(const unsigned char* sets, int* out)
     int lowest(unsigned long long set)
 
 ctypedef fused Lanes:
-    Four
-    Two
+    Floats
+    Doubles
 
 cdef inline void fill(Lanes* v, double x) noexcept nogil:  # in every place
-    if Lanes is Four:
-        v[0] = all_four(<float>x)
+    if Lanes is Floats:
+        v[0] = all_floats(<float>x)
     else:
-        v[0] = all_two(x)
+        v[0] = all_doubles(x)
 
-cdef inline Lanes lane(Lanes* v, int i) noexcept nogil:  # number i of an array, in every place
-    if Lanes is Four:
-        return lane_four(v[i >> 2], i & 3)
+cdef inline Lanes number(void* numbers, Py_ssize_t i, Lanes* like) noexcept nogil:  # number i of an array, in every place
+    if Lanes is Floats:
+        return all_floats((<float*>numbers)[i])
     else:
-        return lane_two(v[i >> 1], i & 1)
+        return all_doubles((<double*>numbers)[i])
 
 cdef inline Lanes root(Lanes v) noexcept nogil:
-    if Lanes is Four:
-        return root_four(v)
+    if Lanes is Floats:
+        return root_floats(v)
     else:
-        return root_two(v)
+        return root_doubles(v)
 
 cdef inline Lanes less(Lanes v, Lanes w) noexcept nogil:  # v < w ? v : w
-    if Lanes is Four:
-        return less_four(v, w)
+    if Lanes is Floats:
+        return less_floats(v, w)
     else:
-        return less_two(v, w)
+        return less_doubles(v, w)
 
 cdef inline Lanes more(Lanes v, Lanes w) noexcept nogil:  # v > w ? v : w
-    if Lanes is Four:
-        return more_four(v, w)
+    if Lanes is Floats:
+        return more_floats(v, w)
     else:
-        return more_two(v, w)
+        return more_doubles(v, w)
 
 cdef inline Lanes chosen(Lanes t, Lanes v, Lanes w) noexcept nogil:  # t > 0 ? v : w
-    if Lanes is Four:
-        return chosen_four(t, v, w)
+    if Lanes is Floats:
+        return chosen_floats(t, v, w)
     else:
-        return chosen_two(t, v, w)
+        return chosen_doubles(t, v, w)
+
+cdef inline Lanes ease(Lanes u, Lanes least, Lanes most, Lanes three) noexcept nogil:  # S(u), u within least … most
+    u = less(more(u, least), most)
+    return u * u * (three - (u + u))
 
 cdef inline int above(Lanes v, Lanes w) noexcept nogil:  # the set of places where v > w
-    if Lanes is Four:
-        return above_four(v, w)
+    if Lanes is Floats:
+        return above_floats(v, w)
     else:
-        return above_two(v, w)
+        return above_doubles(v, w)
 
 cdef inline Lanes* lanes_at(void* place, Lanes* like) noexcept nogil:  # a place as one of the same lanes
     return <Lanes*>place
@@ -81,3 +96,16 @@ cdef inline Lanes load(void* place, Lanes* like) noexcept nogil:  # from any pla
 
 cdef inline void store(void* place, Lanes v) noexcept nogil:
     memcpy(place, &v, sizeof(Lanes))
+
+ctypedef fused Columns:  # numbers of the four columns of samples: one vector, or FOUR_DOUBLES
+    Four
+    Doubles
+
+cdef inline Columns* columns_at(void* place, Columns* like) noexcept nogil:
+    return <Columns*>place
+
+cdef inline Columns spread(void* numbers, int i, Columns* like) noexcept nogil:  # as `number`
+    if Columns is Four:
+        return all_four((<float*>numbers)[i])
+    else:
+        return all_doubles((<double*>numbers)[i])

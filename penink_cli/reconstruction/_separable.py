@@ -7,21 +7,23 @@ In double, or for 8-bit output in float, which vectorises twice as wide.
 import cython
 from cython.cimports.libc.stdlib import free, malloc
 from cython.cimports.penink_cli.reconstruction._lanes import (
-    Four,
+    DOUBLES,
+    FLOATS,
+    PACK,
+    Doubles,
+    Floats,
     Lanes,
-    Two,
-    all_four,
-    all_two,
-    four_at,
-    keep_bytes,
-    less_four,
+    all_floats,
     load,
+    number,
+    pack_bytes,
     store,
 )
 
 COMPILED = cython.compiled
 
 real = cython.fused_type(cython.float, cython.double)
+ROWS = cython.declare(cython.int, 16)  # of samples, expanded at once
 stored = cython.fused_type(cython.uchar, cython.ushort, cython.double)
 
 
@@ -34,16 +36,17 @@ def expand(
     beyond the n columns is room: the columns that share their samples are computed a few at a time, from left to right.
     """
     row: cython.Py_ssize_t
-    i: cython.Py_ssize_t
     k: cython.Py_ssize_t
     n: cython.Py_ssize_t = x_first.shape[0]
+    w: cython.Py_ssize_t = samples.shape[1]
     runs: cython.Py_ssize_t = 0
+    at: cython.Py_ssize_t
     j: cython.int
-    w: cython.int = cython.cast(cython.int, samples.shape[1])
-    h: cython.int = cython.cast(cython.int, samples.shape[0])
-    f: cython.pointer[real]
-    four: Four[4]
-    two: Two[4]
+    end: cython.int
+    f: cython.pointer[real][16]
+    column: cython.Py_ssize_t[4]
+    floats: Floats
+    doubles: Doubles
     start: cython.p_int = cython.cast(cython.p_int, malloc((n + 1) * cython.sizeof(cython.int)))
     with cython.nogil:
         for k in range(n):
@@ -51,25 +54,29 @@ def expand(
                 start[runs] = cython.cast(cython.int, k)
                 runs += 1
         start[runs] = cython.cast(cython.int, n)
-        for row in range(out.shape[0]):
-            i = begin + row
-            f = cython.address(samples[within(i, h), 0])
+        row = 0
+        while row < out.shape[0]:
+            end = cython.cast(cython.int, min(ROWS, out.shape[0] - row))
+            for j in range(end):
+                f[j] = cython.address(samples[within(begin + row + j, samples.shape[0]), 0])
             for k in range(runs):
+                at = start[k]
                 for j in range(4):
+                    column[j] = within(x_first[at] + j, w)
+                while at < start[k + 1]:
                     if real is cython.float:
-                        four[j] = all_four(f[within(x_first[start[k]] + j, w)])
+                        expand_few(
+                            cython.address(floats), f, end, column, cython.address(xw[0, at]), xw.shape[1],
+                            cython.address(out[row, at]), out.shape[1],
+                        )  # fmt: skip
+                        at += FLOATS
                     else:
-                        two[j] = all_two(f[within(x_first[start[k]] + j, w)])
-                if real is cython.float:
-                    expand_run(
-                        four, cython.address(xw[0, start[k]]), xw.shape[1], start[k + 1] - start[k],
-                        cython.address(out[row, start[k]]),
-                    )  # fmt: skip
-                else:
-                    expand_run(
-                        two, cython.address(xw[0, start[k]]), xw.shape[1], start[k + 1] - start[k],
-                        cython.address(out[row, start[k]]),
-                    )  # fmt: skip
+                        expand_few(
+                            cython.address(doubles), f, end, column, cython.address(xw[0, at]), xw.shape[1],
+                            cython.address(out[row, at]), out.shape[1],
+                        )  # fmt: skip
+                        at += DOUBLES
+            row += end
         free(start)
 
 
@@ -86,24 +93,29 @@ def within(j: cython.Py_ssize_t, n: cython.Py_ssize_t) -> cython.Py_ssize_t:
 @cython.inline
 @cython.nogil
 @cython.exceptval(check=False)
-def expand_run(
-    f: cython.pointer[Lanes],
+def expand_few(
+    like: cython.pointer[Lanes],
+    f: cython.pointer[cython.pointer[real]],
+    rows: cython.int,
+    column: cython.pointer[cython.Py_ssize_t],
     w: cython.pointer[real],
     stride: cython.Py_ssize_t,
-    n: cython.Py_ssize_t,
     out: cython.pointer[real],
+    across: cython.Py_ssize_t,
 ) -> cython.void:
-    """Σ f w for n columns that share their four samples, and for a few beyond them."""
-    x: cython.Py_ssize_t = 0
-    step: cython.Py_ssize_t = 4 if Lanes is Four else 2
+    """Σ f w for a vector of columns that share their four samples, in some rows: their weights are loaded once."""
+    j: cython.int
     sums: Lanes
-    while x < n:
-        sums = f[0] * load(w + x, f)
-        sums = sums + f[1] * load(w + stride + x, f)
-        sums = sums + f[2] * load(w + 2 * stride + x, f)
-        sums = sums + f[3] * load(w + 3 * stride + x, f)
-        store(out + x, sums)
-        x += step
+    w0: Lanes = load(w, like)
+    w1: Lanes = load(w + stride, like)
+    w2: Lanes = load(w + 2 * stride, like)
+    w3: Lanes = load(w + 3 * stride, like)
+    for j in range(rows):
+        sums = number(f[j], column[0], like) * w0
+        sums = sums + number(f[j], column[1], like) * w1
+        sums = sums + number(f[j], column[2], like) * w2
+        sums = sums + number(f[j], column[3], like) * w3
+        store(out + across * j, sums)
 
 
 def combine(
@@ -145,14 +157,14 @@ def combine_row(
 ) -> cython.void:
     """One row: Σ w f, clamped and rounded half up, or in double as it is."""
     x: cython.Py_ssize_t
-    begin: cython.Py_ssize_t = 0
     v: real
     half: real = 0.5
     zero: real = 0
     if real is cython.float and stored is cython.uchar:
-        begin = n & ~7
-        combine_bytes(f0, f1, f2, f3, w0, w1, w2, w3, maxval, begin, out)
-    for x in range(begin, n):
+        if n >= PACK:
+            combine_bytes(f0, f1, f2, f3, w0, w1, w2, w3, maxval, n, out)
+            return
+    for x in range(n):
         v = f0[x] * w0 + f1[x] * w1 + f2[x] * w2 + f3[x] * w3
         if stored is cython.double:
             out[x] = v
@@ -178,16 +190,23 @@ def combine_bytes(
     n: cython.Py_ssize_t,
     out: cython.p_uchar,
 ) -> cython.void:
-    """The first n of a row, a multiple of eight: nearly all of the time that a picture without edges takes."""
-    x: cython.Py_ssize_t
-    a: Four
-    b: Four
-    v0: Four = all_four(w0)
-    v1: Four = all_four(w1)
-    v2: Four = all_four(w2)
-    v3: Four = all_four(w3)
-    most: Four = all_four(maxval)
-    for x in range(0, n, 8):
-        a = four_at(f0 + x) * v0 + four_at(f1 + x) * v1 + four_at(f2 + x) * v2 + four_at(f3 + x) * v3
-        b = four_at(f0 + x + 4) * v0 + four_at(f1 + x + 4) * v1 + four_at(f2 + x + 4) * v2 + four_at(f3 + x + 4) * v3
-        keep_bytes(less_four(a, most), less_four(b, most), out + x)
+    """One row of at least PACK bytes: nearly all of the time that a picture without edges takes."""
+    x: cython.Py_ssize_t = 0
+    h: cython.Py_ssize_t
+    k: cython.Py_ssize_t
+    v0: Floats = all_floats(w0)
+    v1: Floats = all_floats(w1)
+    v2: Floats = all_floats(w2)
+    v3: Floats = all_floats(w3)
+    most: cython.uchar = cython.cast(cython.uchar, maxval)
+    sums: Floats[4]
+    while True:
+        for h in range(4):
+            k = x + FLOATS * h
+            sums[h] = (
+                load(f0 + k, sums) * v0 + load(f1 + k, sums) * v1 + load(f2 + k, sums) * v2 + load(f3 + k, sums) * v3
+            )
+        pack_bytes(sums, most, out + x)
+        if x == n - PACK:
+            return
+        x = x + PACK if x + 2 * PACK <= n else n - PACK  # the last ones, some of them a second time

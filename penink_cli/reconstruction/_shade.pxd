@@ -1,5 +1,4 @@
 from penink_cli.reconstruction._desk cimport Desk
-from penink_cli.reconstruction._lanes cimport Lanes
 from penink_cli.reconstruction._tile cimport Tile
 
-cdef void attenuate(Lanes* bits, Desk desk, Tile tile, double radius) noexcept nogil
+cdef void attenuate(Desk desk, Tile tile) noexcept nogil

@@ -7,7 +7,15 @@ A set of samples is a word of 16 bits, in reading order; for sets of pixels see 
 import cython
 from cython.cimports.libc.math import fabsf
 from cython.cimports.libc.stdlib import free, malloc, realloc
-from cython.cimports.penink_cli.reconstruction._lanes import Four, above_four, all_four, four_at, lowest, size_four
+from cython.cimports.penink_cli.reconstruction._lanes import (
+    Four,
+    above_four,
+    all_four,
+    four_at,
+    has_avx2,
+    lowest,
+    size_four,
+)
 from cython.cimports.penink_cli.reconstruction._pixels import Pixels
 from cython.cimports.penink_cli.reconstruction._scene import Scene, side_of_query
 
@@ -27,6 +35,7 @@ class Surroundings(Pixels):
     """
 
     def __init__(self, scene: Scene, step_x: cython.double, step_y: cython.double):
+        self.wide = has_avx2()
         self.scene = scene
         self.step_x = step_x
         self.step_y = step_y

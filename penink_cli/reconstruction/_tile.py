@@ -46,6 +46,8 @@ class Tile(Surroundings):
         b: cython.int
         same: cython.int
         across: cython.int
+        beyond: cython.int
+        cut: cython.int
         full: cython.int = 0
         some: cython.int = 0
         left: cython.int
@@ -62,14 +64,11 @@ class Tile(Surroundings):
             b = self.edge_b[k]
             same = (self.positive[a] & self.positive[b]) | (self.negative[a] & self.negative[b])
             across = (self.positive[a] & self.negative[b]) | (self.negative[a] & self.positive[b])
-            if self.tile_side[k] > 0:
-                full |= across & ~self.sample_side[k]
-                self.partial[k] = ~(same | across | self.sample_side[k]) & 0xFFFF
-            elif self.tile_side[k] < 0:
-                full |= across & self.sample_side[k]
-                self.partial[k] = self.sample_side[k] & ~(same | across)
-            else:
-                self.partial[k] = ~same & 0xFFFF
+            # Samples on the tile's own side of the edge see past it; without a branch, for none can be foreseen.
+            beyond = self.sample_side[k] ^ -(self.tile_side[k] > 0)
+            cut = -(self.tile_side[k] == 0)
+            full |= across & beyond & ~cut
+            self.partial[k] = ~same & (cut | (beyond & ~across)) & 0xFFFF
             some |= self.partial[k]
         if not (full | some):
             return False

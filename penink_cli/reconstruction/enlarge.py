@@ -17,7 +17,7 @@ import numpy.typing as npt
 
 from penink_cli.errors import ParameterError
 from penink_cli.model import EdgeList, Floats, GreyImage
-from penink_cli.reconstruction import _desk, _render, _search, _separable, _shade, _tile, _weights, paths
+from penink_cli.reconstruction import _desk, _render, _search, _shade, _tile, _weights, lanes, paths
 from penink_cli.reconstruction import threads as threading
 from penink_cli.reconstruction.kernels import is_bspline, taps
 from penink_cli.reconstruction.lattice import TILE, Axis, axis, centres
@@ -154,7 +154,9 @@ def _plan(
         return _Reduction(samples, paths, width, height, radius * widening, only_b, window, stored, maxval)
     left, top, across, down = window
     real = np.dtype(np.float32 if single else np.float64)
-    x, y = axis(width, w, left, left + across), axis(height, h, top, top + down)
+    x = axis(width, w, left, left + across)
+    square = (height, h, top, down) == (width, w, left, across)
+    y = x if square else axis(height, h, top, top + down)
     return _Enlargement(samples.astype(real, order="C"), paths, x, y, radius, only_b, window, real, stored, maxval)
 
 
@@ -208,9 +210,10 @@ class _Enlargement:
         first = y.taps.first[begin:end]
         source, last = int(first[0]), int(first[-1]) + 4
         expanded = np.empty((last - source, x.count + TILE), self.real)
-        _separable.expand(self.samples, source, x.taps.first, self.x_taps[self.only_b], expanded)
+        separable = lanes.kernel("_separable")
+        separable.expand(self.samples, source, x.taps.first, self.x_taps[self.only_b], expanded)
         out = np.empty((end - begin, x.count), self.stored) if self.into is None else self.into[begin:end]
-        _separable.combine(expanded, source, first, self.y_taps[self.only_b][begin:end], self.maxval, out)
+        separable.combine(expanded, source, first, self.y_taps[self.only_b][begin:end], self.maxval, out)
         if not self.paths.empty:
             h = len(self.samples)
             try:
@@ -223,7 +226,7 @@ class _Enlargement:
                 tile, desk, self.samples, self.where, self.offset, *self.x_taps, x.cell, x.first,
                 y.taps.where[begin:end], self.y_taps[0][begin:end], self.y_taps[1][begin:end],
                 y.cell[a:b], y.first[a : b + 1] - y.first[a],
-                self.radius, self.only_b, self.maxval, out,
+                out,
             )  # fmt: skip
             self.hands.append(hand)
         if self.into is not None:
@@ -237,7 +240,9 @@ class _Enlargement:
         """What one thread at a time works with: a search, and room for a tile and for its numbers."""
         finder = self.paths.finder(closed=True, rows=(0, 0))
         tile = _tile.Tile(finder, self.x.step, self.y.step, 1 + spill(self.radius))
-        return finder, tile, _desk.Desk(self.real == np.float32)
+        desk = _desk.Desk(self.real == np.float32, self.stored.itemsize, self.radius, self.only_b, self.maxval)
+        lanes.furnish(tile, desk)
+        return finder, tile, desk
 
 
 @dataclass(eq=False)
@@ -280,5 +285,5 @@ class _Reduction:
         return np.floor(np.clip(out, 0.0, self.maxval) + 0.5).astype(self.stored)
 
 
-KERNELS = (_desk, _render, _search, _separable, _shade, _tile, _weights)
+KERNELS = (_desk, _render, _search, _shade, _tile, _weights, *map(lanes.kernel, ("_fades", "_separable", "_sums")))
 COMPILED = paths.COMPILED and all(kernel.COMPILED for kernel in KERNELS)

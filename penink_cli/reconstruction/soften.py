@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from penink_cli.reconstruction import _separable
+from penink_cli.reconstruction import lanes
 from penink_cli.reconstruction.kernels import Taps, taps
 from penink_cli.reconstruction.lattice import centres
 
@@ -55,6 +55,7 @@ def soften(
     y_first = y.first - np.intc(inner[1])
     kept = np.empty((0, inner[2]))
     start = done = 0  # of the kept rows, and of those delivered
+    separable = lanes.kernel("_separable")
     for rows in halves:
         kept = np.concatenate([kept, rows])
         if start + len(kept) == inner[3]:
@@ -65,9 +66,9 @@ def soften(
             continue
         begin, end = int(y_first[done]), int(y_first[ready - 1]) + y.cubic.shape[1]
         expanded = np.empty((end - begin, len(x.first) + EIGHT))
-        _separable.expand(kept, begin - start, x_first, across, expanded)
+        separable.expand(kept, begin - start, x_first, across, expanded)
         out = np.empty((ready - done, len(x.first)), stored)
-        _separable.combine(expanded, begin, y_first[done:ready], y.cubic[done:ready], maxval, out)
+        separable.combine(expanded, begin, y_first[done:ready], y.cubic[done:ready], maxval, out)
         done = ready
         if done < len(y_first):
             drop = max(0, int(y_first[done]) - start)

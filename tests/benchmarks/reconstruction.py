@@ -26,7 +26,7 @@ from penink_cli.arrangement.detection import detect_edges
 from penink_cli.arrangement.validity import check
 from penink_cli.formats import edge_list
 from penink_cli.model import EdgeList, GreyImage
-from penink_cli.reconstruction import _render, _separable
+from penink_cli.reconstruction import _render, lanes
 from penink_cli.reconstruction import enlarge as enlarging
 from penink_cli.reconstruction.enlarge import enlarge, reconstruct
 from penink_cli.reconstruction.paths import Paths
@@ -147,20 +147,20 @@ def processor_time(tasks, rounds):
 def limits():
     """What the parts of a call cost: none of them can be left out, and two threads at best halve their sum."""
     print("Where a call's time goes, processor time of one thread in ms and, halved, to Pillow's")
-    row("samples", "make", "bare write", "one thread", "preprocessing", "plain pass", "near edges", "sum / 2 / Pillow")
+    row("samples", "make", "bare write", "one thread", *STAGES, "sum / 2 / Pillow")
     for n, count, rounds in ((128, 500, 30), (1024, 20000, 3)):
         image = noise(n, n)
         base = processor_time([pillow(image, 8 * n, 8 * n)], rounds)[0]
         write = processor_time([lambda: np.empty((8 * n, 8 * n), np.uint8).fill(1)], rounds)[0]
         start = in_turns([one_thread], 100)[0]
         for make, edges in (("none", None), ("arcs", arcs(n, n, count)), ("scattered", scattered(n, n, count))):
-            spent = {"Paths": np.inf, "retouch": 0.0 if edges is None else np.inf, "plain": np.inf}
+            spent = dict.fromkeys(STAGES, np.inf)
             for _ in range(rounds):
                 for name, seconds in stages(image, edges, 8 * n).items():
                     spent[name] = min(spent[name], seconds)
-            paths, near, plain = spent["Paths"], spent["retouch"], spent["plain"]
-            whole = (paths + near + plain) / base / THREADS
-            row(f"{n}²→{8 * n}²", make, 1e3 * write, 1e3 * start, 1e3 * paths, 1e3 * plain, 1e3 * near, whole)
+            whole = sum(spent.values()) / base / THREADS
+            row(f"{n}²→{8 * n}²", make, 1e3 * write, 1e3 * start, *(1e3 * spent[name] for name in STAGES), whole)
+    print("  (bends: what each sample sees; paths: what each pixel sees, and by which bends; sums: equations 4 and 5)")
 
 
 def one_thread():
@@ -169,29 +169,47 @@ def one_thread():
     other.join()
 
 
+STAGES = ("preprocessing", "plain pass", "bends", "paths", "sums")
+
+
 def stages(image, edges, size) -> dict[str, float]:
-    """Processor time of the stages of one call on one thread: each compiled kernel, and the preparing of paths."""
-    spent: dict[str, float] = {}
+    """Processor time of the stages of one call on one thread."""
+    spent = dict.fromkeys(STAGES, 0.0)
+    separable = lanes.kernel("_separable")
+    hand = enlarging._Enlargement._hand
+    at_rest = False
 
-    def timed(module, name, stage):
-        whole = getattr(module, name)
-
+    def timed(stage, whole):
         def run(*arguments, **options):
             start = time.process_time()
             result = whole(*arguments, **options)
-            spent[stage] = spent.get(stage, 0.0) + time.process_time() - start
+            spent[stage] += time.process_time() - start
             return result
 
-        return mock.patch.object(module, name, run)
+        return run
+
+    def given(work):
+        finder, tile, desk = hand(work)
+        if at_rest:
+            desk.rest()
+        return mock.Mock(move=timed("bends", finder.move)), tile, desk
 
     with (
-        timed(enlarging, "Paths", "Paths"),
-        timed(_separable, "expand", "plain"),
-        timed(_separable, "combine", "plain"),
-        timed(_render, "retouch", "retouch"),
+        mock.patch.object(enlarging, "Paths", timed("preprocessing", Paths)),
+        mock.patch.object(separable, "expand", timed("plain pass", separable.expand)),
+        mock.patch.object(separable, "combine", timed("plain pass", separable.combine)),
+        mock.patch.object(enlarging._Enlargement, "_hand", given),
+        mock.patch.object(_render, "retouch", timed("sums", _render.retouch)),
     ):
         enlarge(image, edges, size, size, threads=1)
-    return spent
+        found = dict(spent)
+        if edges is not None:  # once more without any arithmetic: what then takes time is finding paths
+            at_rest = True
+            spent["sums"] = 0.0
+            enlarge(image, edges, size, size, threads=1)
+            found["paths"] = min(spent["sums"], found["sums"])
+            found["sums"] -= found["paths"]
+    return found
 
 
 def photos():

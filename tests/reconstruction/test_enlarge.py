@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from penink_cli.errors import ParameterError
 from penink_cli.model import EdgeList, GreyImage
 from penink_cli.reconstruction import enlarge as enlarging
+from penink_cli.reconstruction import lanes
 from penink_cli.reconstruction.enlarge import enlarge, reconstruct
 from penink_cli.reconstruction.paths import Paths, reach
 from penink_cli.reconstruction.weights import weights
@@ -211,6 +212,22 @@ def test_no_byte_depends_on_threads_bands_or_window(picture, soften, size, maxva
         window = int(x), int(y), int(w), int(h)
         part = enlarge(image, edges, *size, soften=soften, maxval=maxval, window=window, threads=2).values
         assert np.array_equal(part, whole[y : y + h, x : x + w]), window
+
+
+@pytest.mark.parametrize("maxval", [255, 65535])
+def test_no_byte_depends_on_how_many_numbers_the_processor_computes_at_once(picture, maxval, monkeypatch):
+    if not lanes.WIDE:
+        pytest.skip("this processor has no AVX2")
+    image, edges = picture
+    aligned = random_edges(np.random.default_rng(12), 31, 23, 60, lattice=2)
+    for arrangement in (None, edges, aligned):
+        for size, way in (((248, 184), {}), ((401, 299), {"radius": 1.7}), ((100, 97), {"soften": True}),
+                          ((31, 700), {"kernel": "bspline"})):  # fmt: skip
+            found = []
+            for wide in (True, False):
+                monkeypatch.setattr(lanes, "WIDE", wide)
+                found.append(enlarge(image, arrangement, *size, maxval=maxval, **way).values)
+            assert np.array_equal(*found), (size, way)
 
 
 def test_bands_come_in_order_and_make_up_the_whole(picture, monkeypatch):
