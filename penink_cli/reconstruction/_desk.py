@@ -39,10 +39,10 @@ class Desk:
     def __init__(
         self,
         single: cython.bint,
-        stored: cython.int,
-        radius: cython.double,
-        only_b: cython.bint,
-        maxval: cython.double,
+        stored: cython.int = 8,
+        radius: cython.double = 1.0,
+        only_b: cython.bint = False,
+        maxval: cython.double = 1.0,
     ):
         k: cython.int
         i: cython.int

@@ -7,7 +7,7 @@ those of plain convolution, changed where the points of a tile do not see all of
 
 import cython
 from cython.cimports.penink_cli.reconstruction._desk import Desk
-from cython.cimports.penink_cli.reconstruction._lanes import Four, fill
+from cython.cimports.penink_cli.reconstruction._lanes import turn_sets
 from cython.cimports.penink_cli.reconstruction._shade import attenuate
 from cython.cimports.penink_cli.reconstruction._tile import Tile
 
@@ -28,23 +28,23 @@ def _smooth(t: cython.float) -> cython.float:
 @cython.cfunc
 @cython.nogil
 @cython.exceptval(check=False)
-def _shade(tile: Tile, desk: Desk, radius: cython.double) -> cython.void:
+def _shade(tile: Tile, desk: Desk) -> cython.void:
     """Find what the points of a tile that `see` has looked at do not see, and how far it is attenuated."""
     k: cython.int
     u: cython.float
     same: cython.bint = True
     ux: cython.p_float = cython.cast(cython.p_float, desk.ux)
-    uy: cython.pointer[Four] = cython.cast(cython.pointer[Four], desk.uy)
+    uy: cython.p_float = cython.cast(cython.p_float, desk.uy)
     for k in range(8):
-        u = cython.cast(cython.float, (tile.px[min(k, tile.nx - 1)] - tile.cx) / radius)
+        u = cython.cast(cython.float, (tile.px[min(k, tile.nx - 1)] - tile.cx) / desk.radius)
         same &= ux[k] == u
         ux[k] = u
-        u = cython.cast(cython.float, (tile.py[min(k, tile.ny - 1)] - tile.cy) / radius)
-        same &= cython.cast(cython.p_float, uy + k)[0] == u
-        fill(uy + k, u)
+        u = cython.cast(cython.float, (tile.py[min(k, tile.ny - 1)] - tile.cy) / desk.radius)
+        same &= uy[k] == u
+        uy[k] = u
     if not same:
         desk.known = 0
-    attenuate(cython.cast(cython.pointer[Four], desk.bits), desk, tile, radius)
+    attenuate(desk, tile)
 
 
 @cython.cfunc
@@ -53,6 +53,8 @@ def _shade(tile: Tile, desk: Desk, radius: cython.double) -> cython.void:
 def _change(
     desk: Desk,
     r: cython.int,
+    shaded: cython.int,
+    faded: cython.int,
     xc: cython.p_float,
     xb: cython.p_float,
     yc: cython.p_double,
@@ -61,6 +63,7 @@ def _change(
 ) -> cython.void:
     """By what equation 5's weights of the 16 samples (outer) differ from plain ones at the 8 points of row r (inner).
 
+    shaded, faded: the sets of samples some of them do not see, and of those that count at some all the same.
     xc, xb: (4, 8) weights of each column of samples at the points; yc, yb: (4,) of each row of samples.
     """
     s: cython.int
@@ -79,10 +82,10 @@ def _change(
     for c in range(8):
         by_cubic[c] = by_spline[c] = 0.0
     for s in range(16):
-        y = 0.0 if (desk.shaded[r] >> s) & 1 else 1.0
+        y = 0.0 if (shaded >> s) & 1 else 1.0
         for c in range(8):
             alpha[8 * s + c] = y
-        if (desk.faded[r] >> s) & 1:
+        if (faded >> s) & 1:
             source = cython.cast(cython.p_float, desk.alpha) + 64 * s + 8 * r
             for c in range(8):
                 alpha[8 * s + c] = source[c]
@@ -140,7 +143,6 @@ def rows(
     y_base: cython.int[::1],
     x_plain: cython.float[:, ::1],
     y_plain: cython.float[:, ::1],
-    radius: cython.double,
     weight: cython.float[:, :, ::1],
 ) -> cython.bint:
     """Fill the rows of some pixels, each the mean of fine × fine points. True if an edge matters.
@@ -176,6 +178,8 @@ def rows(
     pixel = cython.declare(cython.int[8])
     place = cython.declare(cython.int[32])
     down = cython.declare(cython.int[4])
+    shaded = cython.declare(cython.int[8])
+    faded = cython.declare(cython.int[8])
     with cython.nogil:
         for py in range(weight.shape[0]):
             for px in range(weight.shape[1]):
@@ -197,7 +201,9 @@ def rows(
                 if not tile.see():
                     continue
                 matters = True
-                _shade(tile, desk, radius)
+                _shade(tile, desk)
+                turn_sets(desk.shaded_rows, shaded)
+                turn_sets(desk.faded_rows, faded)
                 for c in range(8):
                     k = at_x + min(c, nx - 1)
                     pixel[c] = k // fine - pixels[1]
@@ -212,7 +218,10 @@ def rows(
                         continue
                     for i in range(4):
                         down[i] = 5 * (min(last_y, max(0, y_cell[a] - 1 + i)) - y_base[k // fine])
-                    _change(desk, r, columns_c, columns_b, cython.address(yc[k, 0]), cython.address(yb[k, 0]), change)
+                    _change(
+                        desk, r, shaded[r], faded[r], columns_c, columns_b,
+                        cython.address(yc[k, 0]), cython.address(yb[k, 0]), change,
+                    )  # fmt: skip
                     for c in range(nx):
                         px = pixel[c]
                         if px < 0 or px >= weight.shape[1]:

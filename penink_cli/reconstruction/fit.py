@@ -21,7 +21,7 @@ import numpy as np
 import numpy.typing as npt
 
 from penink_cli.model import EdgeList, Floats
-from penink_cli.reconstruction import _banded, _desk, _fit, _rows, _tile
+from penink_cli.reconstruction import _banded, _desk, _fit, _rows, _tile, lanes
 from penink_cli.reconstruction import threads as threading
 from penink_cli.reconstruction.lattice import Axis, axis
 from penink_cli.reconstruction.paths import Paths, spill
@@ -136,6 +136,7 @@ class _Hand:
         self.finder = paths.finder(closed=True, rows=(0, 0))
         self.tile = _tile.Tile(self.finder, step_x, step_y, 1 + spill(1.0))
         self.desk = _desk.Desk(True)
+        lanes.furnish(self.tile, self.desk)
         self.numbers = np.empty(0, np.float32)
 
     def room(self, *shapes: tuple[int, ...]) -> list[Grey32]:
@@ -207,7 +208,7 @@ class _Fit:
             hand.tile, hand.desk, x.taps.where, x.taps.cubic, x.taps.bspline, x.cell, x.first,
             y.taps.where, y.taps.cubic, y.taps.bspline, y.cell, y.first,
             tiles, np.array([rows[0], columns[0]], np.int32), self.fine,
-            self.x_base, self.y_base, self.x_plain, self.y_plain, 1.0, weight,
+            self.x_base, self.y_base, self.x_plain, self.y_plain, weight,
         )  # fmt: skip
         if not matters:
             return
