@@ -34,7 +34,7 @@ CELL_PT = 0.96
 #: so that tone is right in small things too.
 SIGMA_PT = 2.5
 #: The same for the paper's rule, which does not say what is near a stroke. The narrower, the lighter: at 2.5 a ramp is
-#: 4.8 % too light and a photograph 10, at 1.6 they are 9.7 and 15.
+#: 4.8 % too light, at 1.95 it is 7.3 and photographs 8 to 11, at 1.6 they are 9.7 and 11 to 14.
 STRICT_SIGMA_PT = 1.95
 #: σ of what the eye sees at arm's length, 1/16 inch: errors are measured, and fed back, through this.
 EYE_PT = 4.5
@@ -126,10 +126,13 @@ class Sheet:
         self.residual = self.low_pass(tone - self.ink)
 
     def owe_strictly(self) -> None:
-        """Set what is due by the paper's rule: the tone itself, with the low-passed ink so far taken from it."""
+        """Set what is due by the paper's rule, near each place and whatever steps there are: tone less the ink so far.
+
+        Both low-passed alike: held against the bare tone, the drawing would be the lighter the noisier a photograph is.
+        """
         self.low_pass = LowPass(STRICT_SIGMA_PT / CELL_PT, self.tone, 2.0, self._each)
-        self.weight = np.ones_like(self.tone)
-        self.residual = self.tone - self.low_pass(self.ink)
+        self.weight = self.low_pass(np.ones_like(self.tone))
+        self.residual = self.low_pass(self.tone - self.ink)
 
     def paint(self, lines: Polylines, widths: Floats) -> Ints:
         """Ink polylines (points), whatever is due. Returns (n,) how many subpixels each newly inks."""
