@@ -194,6 +194,7 @@ def stroke(
     dy: cython.double
     ex: cython.double = 0.0
     ey: cython.double = 0.0
+    turn: cython.double
     cap: cython.bint
     new: cython.int
     if n == 0:
@@ -205,15 +206,17 @@ def stroke(
     for i in range(n):
         dx = points[2 * i + 2] - points[2 * i]
         dy = points[2 * i + 3] - points[2 * i + 1]
-        # a joint needs a disc only where the line turns by more than some 5 degrees
-        cap = i == 0
-        if not cap and fabs(dx * ey - dy * ex) > 0.09 * sqrt((dx * dx + dy * dy) * (ex * ex + ey * ey)):
-            cap = True
+        # the square of the sine of the turn from the piece before
+        turn = dx * ey - dy * ex
+        turn = turn * turn / ((dx * dx + dy * dy) * (ex * ex + ey * ey) + 1e-12)
+        # a joint needs a disc only where the line turns by more than some 2 degrees
+        cap = i == 0 or turn > 0.001
         ex = dx
         ey = dy
+        # an arc is longer than its chord by a 24th of that square
         new = bar(bits, rows, columns, points[2 * i] + ox, points[2 * i + 1] + oy,
-                  points[2 * i + 2] + ox, points[2 * i + 3] + oy, half_width(width, gain, dx, dy),
-                  cap, i + 1 == n, True)
+                  points[2 * i + 2] + ox, points[2 * i + 3] + oy,
+                  half_width(width, gain, dx, dy) * (1.0 + turn / 24.0), cap, i + 1 == n, True)
         if fresh != cython.NULL:
             fresh[i] = new
         total += new

@@ -21,11 +21,11 @@ STEP_PT = 1.5
 #: Copies of strokes that are laid out at a time: memory stays bounded on any sheet.
 CHUNK = 12_000
 #: A stroke is not tried where the tone is lighter by this than where it enters: tiles have holes that only late strokes
-#: fill. Whole strokes lie so evenly that fewer will do.
-SLACK, SLACK_WHOLE = 0.4, 0.15
-#: Less of the error is fed back where the tone is lighter than this part of what one stroke makes: a single stroke is
-#: bound to be too dark where it is and too light beside it.
-SINGLE = 0.7
+#: fill. Dots lie so evenly that fewer will do.
+SLACK, SLACK_DOTS = 0.4, 0.15
+#: Less of the error is fed back where the tone is lighter than this part of what one stroke makes, by the square of how
+#: much lighter: a single stroke is bound to be too dark where it is and too light beside it, and would be given up.
+SINGLE = 0.5
 #: Lighter than this dots along the frame would look like a line.
 RIM_TONE = 0.45
 
@@ -173,7 +173,7 @@ def blast_tile(
         size = float(np.mean(np.square(error, dtype=np.float64)))
         if best is None or size < best[0]:
             best = size, strokes
-        wanted = wanted + sheet.spread(error) * many
+        wanted = wanted + sheet.spread(error) * many * many
     assert best is not None
     return best[1]
 
@@ -195,7 +195,8 @@ def _place(
     """One pass over all copies in order of priority; strokes that may be trimmed end at the borders."""
     out = []
     plain = strict or texture.whole
-    for part in copies(texture, enters, sheet, seed, 2.0 if strict else SLACK_WHOLE if texture.whole else SLACK, pen):
+    dotted = len(texture.strokes.points) == len(texture.strokes)
+    for part in copies(texture, enters, sheet, seed, 2.0 if strict else SLACK_DOTS if dotted else SLACK, pen):
         points, first, widths = part.points, part.first, part.widths
         pieces = curves.pieces_of(points, first, STEP_PT)
         lines = curves.sample(points, first, pieces)

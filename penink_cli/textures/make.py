@@ -24,6 +24,9 @@ LAYER_TURNS = (0.0, 90.0, 45.0, 135.0)
 #: A stroke paints a little more than its pen is wide: the device's gain at 600 dpi, roughly.
 GAIN_PT = 0.15
 
+#: Lines that a brick is hatched with before all is crossed by others, of 64 for which there is room.
+HATCHED = 56
+
 Maker = Callable[[np.random.Generator, int], Floats]
 
 
@@ -223,7 +226,7 @@ def grass(angle: float, pen: float, spacing: float, layers: int, seed: int) -> T
 
 
 def brick(angle: float, pen: float, spacing: float, layers: int, seed: int) -> Texture:
-    """A wall: the joints first, then bricks hatched one by one, then everything."""
+    """A wall: the joints first, then all bricks hatched, then everything."""
     rng = np.random.default_rng(seed)
     course, stretcher = 12.0, 36.0
     rows, columns = 8, 3
@@ -245,28 +248,26 @@ def brick(angle: float, pen: float, spacing: float, layers: int, seed: int) -> T
                 joints.append(line)
     sides = [joints[k::4] for k in range(4)]
     order = [group[i] for group in sides for i in rng.permutation(len(group))]
-    torus = Torus(width, height, 0.7)
-    for line in order:
-        torus.add(along_curve(line[None])[0], polygon_length(line))
-    boxes = np.array(spans)
-
-    def hatch(rng: np.random.Generator, n: int) -> Floats:
-        box = boxes[rng.integers(0, len(boxes), n)]
-        top = box[:, 1] + rng.uniform(0.3, 2.0, n)
-        bottom = box[:, 3] - rng.uniform(0.3, 2.0, n)
-        x = box[:, 0] + 1.0 + rng.random(n) * (box[:, 2] - box[:, 0] - 7.0)
-        start, end = np.column_stack([x + 5.0, top]), np.column_stack([x, bottom])
-        t = np.array([0.0, 1 / 3, 2 / 3, 1.0])[None, :, None]
-        line = start[:, None] * (1 - t) + end[:, None] * t
-        line[:, 1:3, 0] += rng.normal(0, 0.3, (n, 1))
-        return line
+    # a line more in every brick, each time half way between two that are there, of 64 in the end
+    for k in range(HATCHED):
+        across = (int(f"{k:06b}"[::-1], 2) + rng.uniform(0.2, 0.8, len(spans))) / 64
+        for i in rng.permutation(len(spans)):
+            left, top, right, bottom = spans[i] + np.array([0.7, rng.uniform(0.3, 1.2), -0.7, -rng.uniform(0.3, 1.2)])
+            foot = left - 5.0 + float(across[i]) * (right - left + 5.0)
+            # slanting, and within the brick
+            t = np.clip((np.array([left, right]) - foot) / 5.0, 0.0, 1.0)
+            if (t[1] - t[0]) * (bottom - top) < 1.5:
+                continue
+            at = t[0] + np.array([0.0, 1 / 3, 2 / 3, 1.0]) * (t[1] - t[0])
+            line = np.column_stack([foot + 5.0 * at, bottom + (top - bottom) * at])
+            line[1:3, 0] += rng.normal(0, 0.15)
+            order.append(line)
 
     def course_lines(rng: np.random.Generator, n: int) -> Floats:
         centre = rng.uniform(0, 1, (n, 2)) * (width, height)
         return bowed_line(centre, angle + rng.normal(0, 1.2, n), rng.uniform(14, 30, n), rng.normal(0, 0.2, n))
 
-    strokes = order + fill(torus, hatch, pen + GAIN_PT, 0.62, 0.16, 24, rng)
-    strokes += fill(Torus(width, height, 0.7), course_lines, pen + GAIN_PT, FULL + 0.012, 0.6, 32, rng)
+    strokes = order + fill(Torus(width, height, 0.7), course_lines, pen + GAIN_PT, FULL + 0.012, 0.6, 32, rng)
     return tile("brick", strokes, [pen] * len(strokes), width, height, seed, whole=True)
 
 

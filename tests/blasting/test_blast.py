@@ -56,6 +56,15 @@ def test_the_papers_rule_is_too_light_and_never_too_dark():
     assert 4 < measures.tone_figures(strokes, wanted)[1] < 16
 
 
+def test_the_papers_rule_is_no_lighter_where_a_photograph_is_noisy():
+    noise = np.clip(0.5 + np.random.default_rng(1).normal(0, 0.15, (200, 200)), 0, 1)
+    bias = [
+        measures.tone_figures(blast(t, 200, 200, None, find_texture("crosshatch"), rule="strict"), t)[1]
+        for t in (flat(0.5), noise)
+    ]
+    assert bias[1] < bias[0] + 3
+
+
 def test_the_threshold_rule_draws_nothing_where_the_paper_is_white():
     wanted = np.zeros((50, 50))
     wanted[:, 25:] = 0.5
@@ -88,7 +97,7 @@ def test_no_rows_of_ends_where_the_tone_changes():
         assert np.mean([measures.ends_in_rows(strokes, -45.0) for strokes in hands]) < 0.04
 
 
-@pytest.mark.parametrize("texture", ["crosshatch", "stipple"])
+@pytest.mark.parametrize("texture", ["crosshatch", "stipple", "scribble"])
 @pytest.mark.parametrize("level", [0.01, 0.025])
 def test_a_light_flat_has_as_much_ink_as_its_tone_asks(texture, level):
     strokes = blast(flat(level), 288, 288, None, find_texture(texture))

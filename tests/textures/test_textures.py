@@ -58,8 +58,17 @@ def test_every_prefix_is_evenly_spread(name, part):
     assert lot.std() < 0.75 * np.sqrt(n / 9)
 
 
-def test_a_shipped_texture_is_what_make_makes():
-    assert written(make("stipple")) == written(find_texture("stipple"))
+@pytest.mark.parametrize("name", ["stipple", "brick"])
+def test_a_shipped_texture_is_what_make_makes(name):
+    assert written(make(name)) == written(find_texture(name))
+
+
+def test_bricks_are_hatched_evenly_from_side_to_side():
+    tile = find_texture("brick").strokes
+    ends = [tile[i][[0, -1]] for i in range(len(tile))]
+    feet = np.array([a[0] for a, b in ends if 0.8 < abs(a[0] - b[0]) < 6 and abs(a[1] - b[1]) > 5])
+    share, _ = np.histogram(feet % 36, bins=6, range=(0, 36))
+    assert len(feet) > 800 and share.std() < 0.25 * share.mean()
 
 
 def test_writing_and_reading_again_changes_nothing():
