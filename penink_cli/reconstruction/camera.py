@@ -37,7 +37,8 @@ def camera_blur(grey: npt.NDArray[np.floating], edges: EdgeList) -> float:
     if len(column) < _FEW:
         return USUAL_BLUR
     along_x = np.abs(normals[:, 0]) >= np.abs(normals[:, 1])
-    dx, dy = np.where(along_x, 1, 0), np.where(along_x, 0, 1)
+    pixels = np.ascontiguousarray(grey).ravel()
+    place, onward = row * width + column, np.where(along_x, 1, width)
     offsets = np.arange(-2, 3)
     taps = np.exp(-0.5 * (offsets / _SMOOTH) ** 2)
     taps /= taps.sum()
@@ -47,9 +48,9 @@ def camera_blur(grey: npt.NDArray[np.floating], edges: EdgeList) -> float:
         total = np.zeros(len(column))
         for i, down in zip(offsets, taps):
             for j, across in zip(offsets, taps):
-                y, x = row + step * dy + i, column + step * dx + j
-                horizontal = np.asarray(grey[y, x + 1], float) - grey[y, x - 1]
-                vertical = np.asarray(grey[y + 1, x], float) - grey[y - 1, x]
+                at = place + step * onward + (i * width + j)
+                horizontal = pixels.take(at + 1).astype(float) - pixels.take(at - 1)
+                vertical = pixels.take(at + width).astype(float) - pixels.take(at - width)
                 total += 0.5 * down * across * (horizontal * normals[:, 0] + vertical * normals[:, 1])
         return total
 
