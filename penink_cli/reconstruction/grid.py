@@ -29,7 +29,8 @@ from penink_cli.reconstruction.reduction import reduce
 Grey32 = npt.NDArray[np.float32]
 
 MAX_ERROR = 8 / 255
-LEAST_REGION_PX = 16  # pixels of the photo; smaller ones are specks that no stroke can show
+# Smaller regions are specks that no stroke can show: 4 x 4 pixels of 512 x 512, however finely the photo is resolved.
+LEAST_REGION, LEAST_REGION_PX = 1 / 16384, 16  # of the picture, and at least so many pixels
 _VIEW_PX = 1_000_000
 _LEAST_SIDE = 32  # samples; below that a cell holds too much of the picture
 _RUNG = 100  # the error is tried of grids that differ by a sample a side, or by 1/100 where that is more
@@ -109,6 +110,7 @@ def choose_grid(
     long = max(width, height)
     ladder = _ladder(-(-_LEAST_SIDE * long // min(width, height)), long)
     tried: dict[tuple[int, bool], Grid] = {}
+    errors: dict[int, float] = {}  # in the quick view
 
     def size(side: int) -> tuple[int, int]:
         return max(1, round(width * side / long)), max(1, round(height * side / long))
@@ -128,9 +130,17 @@ def choose_grid(
 
     def search(limit: float, finer_than: float = 0.0) -> int:
         """The least side of the ladder whose error, in the quick view, stays within the limit."""
+
+        def serves(side: int) -> bool:
+            if any(other <= side and error <= limit for other, error in errors.items()):
+                return True
+            if any(other >= side and error > limit for other, error in errors.items()):
+                return False
+            errors[side] = attempt(side, quick).error
+            return errors[side] <= limit
+
         rungs = [side for side in ladder if side >= finer_than] or [long]
-        at = bisect_left(rungs[:-1], True, key=lambda side: attempt(side, quick).error <= limit)
-        return rungs[at]
+        return rungs[bisect_left(rungs[:-1], True, key=serves)]
 
     def serving(side: int) -> int:
         """The least side from there on that leaves no region empty."""
@@ -189,7 +199,7 @@ class _Regions:
         _walls.block(*segments(edges, width, height), walls)
         parent = np.zeros(height * width, np.int32)
         _walls.regions(walls, parent)
-        wanted = np.bincount(parent) >= LEAST_REGION_PX
+        wanted = np.bincount(parent) >= max(LEAST_REGION_PX, LEAST_REGION * height * width)
         self.count = int(wanted.sum())
         number = np.where(wanted, np.cumsum(wanted), 0).astype(np.int32)
         self.region = number[parent].reshape(height, width)  # 1 …, 0 where it is too small

@@ -58,6 +58,15 @@ def test_every_region_gets_a_sample():
     assert inside and chosen.empty_regions == 0
 
 
+@pytest.mark.parametrize(
+    ("frame", "side", "regions"), [(64, 3, 1), (64, 4, 2), (1024, 4, 1), (1024, 7, 1), (1024, 9, 2)]
+)
+def test_a_speck_is_no_region_however_finely_it_is_resolved(frame, side, regions):
+    square = np.array([[20, 20], [20 + side, 20], [20 + side, 20 + side], [20, 20 + side]], float)
+    edges = EdgeList(frame, frame, square, np.array([[0, 1], [1, 2], [2, 3], [3, 0]]))
+    assert grid._Regions(edges, frame, frame).count == regions
+
+
 @pytest.mark.parametrize("seed", range(3))
 def test_the_grid_is_the_least_with_a_sample_in_every_region(seed):
     """Which grids have one is nearly chance: to step by a few percent leaps over many."""
