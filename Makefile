@@ -82,6 +82,6 @@ check-dist: needs-python
 
 clean:
 	rm -rf $(VENV) build dist *.egg-info .pytest_cache .hypothesis .mypy_cache .ruff_cache
-	rm -f $(KERNELS:.py=.c) $(wildcard $(KERNELS:.py=.*.so)) penink_cli/_shared.*
+	rm -f $(addsuffix .c,$(basename $(KERNELS))) $(wildcard $(addsuffix .*.so,$(basename $(KERNELS)))) penink_cli/_shared.*
 	find penink_cli tests -name __pycache__ -prune -exec rm -rf {} +
 	$(MAKE) -C samples clean

@@ -1,4 +1,4 @@
-"""The pattern rules of samples/penink.mk, driven by make itself."""
+"""The pattern rules of samples/penink.mk, driven by make itself, and what the Makefile would remove."""
 
 from __future__ import annotations
 
@@ -77,3 +77,11 @@ def test_every_photograph_of_a_folder_has_a_rule_and_no_stage_file_is_one(folder
     plan = make(folder, "--dry-run", "all")
     assert plan.returncode == 0, plan.stderr
     assert {f"shots/{name[0]}.ps" for name in photos} == {t for t in remade(plan) if t.endswith(".ps")}
+
+
+def test_clean_keeps_the_kernels_sources():
+    env = environment(MAKEFLAGS="")
+    told = subprocess.run(["make", "-n", "clean"], cwd=ROOT, env=env, capture_output=True, text=True, check=True)
+    words = told.stdout.split()
+    assert "penink_cli/arrangement/_predicates.c" in words
+    assert not [word for word in words if word.endswith((".py", ".pyx", ".pxd", ".h"))]
