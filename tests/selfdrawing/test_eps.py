@@ -52,7 +52,9 @@ def test_tone_is_that_of_the_samples_on_any_device(eps, dpi, tmp_path):
     assert ink(printed(eps, tmp_path, dpi, *CROP)) == pytest.approx(wanted, abs=0.02)
 
 
-@pytest.mark.parametrize("how", ["2 2 scale", "3 0.8 scale", "60 rotate", "-1 1 scale", "1 -1 scale", "[1 .2 .3 1 0 0] concat"])
+@pytest.mark.parametrize(
+    "how", ["2 2 scale", "3 0.8 scale", "60 rotate", "-1 1 scale", "1 -1 scale", "[1 .2 .3 1 0 0] concat"]
+)
 def test_placed_in_any_way_it_keeps_its_tone(eps, how, tmp_path):
     place = f"%!\n<< /PageSize [700 700] >> setpagedevice 350 350 translate {how} -54 -54 translate\n".encode()
     page = printed(place + eps, tmp_path, 300)
