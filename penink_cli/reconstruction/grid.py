@@ -10,9 +10,11 @@ one tells as much of a grid of a hundred samples a side. The grid found is then 
 
 from __future__ import annotations
 
+import math
 from bisect import bisect_left
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import count
 
 import numpy as np
 import numpy.typing as npt
@@ -33,7 +35,8 @@ MAX_ERROR = 8 / 255
 LEAST_REGION, LEAST_REGION_PX = 1 / 16384, 16  # of the picture, and at least so many pixels
 _VIEW_PX = 1_000_000
 _LEAST_SIDE = 32  # samples; below that a cell holds too much of the picture
-_RUNG = 100  # the error is tried of grids that differ by a sample a side, or by 1/100 where that is more
+_RUNG = 50  # the error is tried of grids that differ by a sample a side, or by 1/50 where that is more
+_POWER = 0.6  # of the side by which the error falls, where only one is known
 _FINER = 1.03  # how much finer the grid is at the next try, where the photo itself finds a grid too coarse
 
 
@@ -130,17 +133,8 @@ def choose_grid(
 
     def search(limit: float, finer_than: float = 0.0) -> int:
         """The least side of the ladder whose error, in the quick view, stays within the limit."""
-
-        def serves(side: int) -> bool:
-            if any(other <= side and error <= limit for other, error in errors.items()):
-                return True
-            if any(other >= side and error > limit for other, error in errors.items()):
-                return False
-            errors[side] = attempt(side, quick).error
-            return errors[side] <= limit
-
-        rungs = [side for side in ladder if side >= finer_than] or [long]
-        return rungs[bisect_left(rungs[:-1], True, key=serves)]
+        sides = [side for side in ladder if side >= finer_than] or [long]
+        return _least_within(limit, sides, lambda side: attempt(side, quick).error, errors)
 
     def serving(side: int) -> int:
         """The least side from there on that leaves no region empty."""
@@ -189,6 +183,37 @@ def _ladder(least: int, most: int) -> list[int]:
         ladder.append(least)
         least += 1 + least // _RUNG
     return [*ladder, most]
+
+
+def _least_within(limit: float, sides: list[int], error: Callable[[int], float], known: dict[int, float]) -> int:
+    """The first of the sides whose error stays within the limit; that of the last is not tried.
+
+    The error falls about as a power of the side, which finds the place in four or five tries instead of eight.
+
+    sides: ascending. known: errors of some sides, added to.
+    """
+    low, high = -1, len(sides) - 1
+    for tries in count():
+        for at, side in enumerate(sides):
+            if side in known and known[side] <= limit:
+                high = min(high, at)
+            elif side in known:
+                low = max(low, at)
+        if high - low <= 1:
+            return sides[high]
+        coarse, fine = sides[max(0, low)], sides[high]
+        guess = (coarse * fine) ** 0.5
+        if limit > 0 and tries % 3 < 2:  # a guess may do little to narrow the range, halving does not
+            power = _POWER
+            if coarse in known and fine in known:
+                power = max(0.1, math.log(known[coarse] / max(known[fine], 1e-9)) / math.log(fine / coarse))
+            if coarse in known:
+                guess = coarse * (known[coarse] / limit) ** (1 / power)
+            elif fine in known:
+                guess = fine * (known[fine] / limit) ** (1 / power)
+        at = bisect_left(sides, guess, low + 1, high - 1)
+        known[sides[at]] = error(sides[at])
+    raise AssertionError
 
 
 class _Regions:

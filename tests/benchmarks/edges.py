@@ -1,4 +1,4 @@
-"""Edges and samples measured: ``python -m tests.benchmarks.edges`` (about six minutes; ``--quick`` half a minute).
+"""Edges and samples measured: ``python -m tests.benchmarks.edges`` (about ten minutes; ``--quick`` half a minute).
 
 Or only some parts: ``python -m tests.benchmarks.edges positions trips heldout hostile storage large``.
 
