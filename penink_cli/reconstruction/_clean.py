@@ -6,13 +6,10 @@ the steps that are open. A flood of words takes a fifth of the time of a queue o
 """
 
 import cython
+from cython.cimports.libc.math import exp, floor
+from cython.cimports.penink_cli.reconstruction._scene import side_of_query, side_of_vertex
 
 COMPILED = cython.compiled
-
-if cython.compiled:
-    from cython.cimports.libc.math import exp, floor
-else:
-    from math import exp, floor
 
 MAX_REACH = 24  # steps of a walk along each axis; the window is 2 · 24 + 1 wide, and fits a word
 
@@ -328,29 +325,9 @@ def _sees(
     qy: cython.double,
 ) -> cython.bint:
     """Whether edge e leaves the segment from p to q alone, both shifted by (ε, ε²)."""
-    ex: cython.double = bx[e] - ax[e]
-    ey: cython.double = by[e] - ay[e]
-    p: cython.double = ex * (py - ay[e]) - ey * (px - ax[e])
-    q: cython.double = ex * (qy - ay[e]) - ey * (qx - ax[e])
-    a: cython.double
-    b: cython.double
-    tie: cython.double = -ey if ey != 0 else ex
-    if p == 0:
-        p = tie
-    if q == 0:
-        q = tie
-    if (p > 0) == (q > 0):
+    if side_of_query(ax[e], ay[e], bx[e], by[e], px, py) == side_of_query(ax[e], ay[e], bx[e], by[e], qx, qy):
         return True
-    ex = qx - px
-    ey = qy - py
-    a = ex * (ay[e] - py) - ey * (ax[e] - px)
-    b = ex * (by[e] - py) - ey * (bx[e] - px)
-    tie = ey if ey != 0 else -ex
-    if a == 0:
-        a = tie
-    if b == 0:
-        b = tie
-    return (a > 0) == (b > 0)
+    return side_of_vertex(px, py, qx, qy, ax[e], ay[e]) == side_of_vertex(px, py, qx, qy, bx[e], by[e])
 
 
 def resample(
