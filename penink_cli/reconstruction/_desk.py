@@ -4,7 +4,7 @@
 import cython
 from cython.cimports.libc.stdlib import free, malloc, realloc
 from cython.cimports.libc.string import memcpy, memset
-from cython.cimports.penink_cli.reconstruction._lanes import has_avx2
+from cython.cimports.penink_cli.reconstruction._lanes import lanes_here
 
 COMPILED = cython.compiled
 
@@ -173,6 +173,6 @@ def paint_nothing(
     """For a desk at rest."""
 
 
-def has_wide_lanes() -> bool:
-    """Whether the processor this runs on has AVX2."""
-    return has_avx2() != 0
+def lanes() -> int:
+    """How many bytes of numbers side by side the processor this runs on is good at: 16, 32 or 64."""
+    return lanes_here()

@@ -1,9 +1,10 @@
 # cython: language_level=3, boundscheck=False, wraparound=False, cdivision=True
-"""The arithmetic of equation 4: how much a sample counts at each pixel of a tile, by rows of eight, as vectors.
+"""The arithmetic of equation 4: how much a sample counts at each pixel of a tile.
 
-In double, or for 8-bit output in float, of which a vector holds twice as many; what pixels see is exact in both. A row
-is `row` vectors: with SSE2 two of floats, four of doubles. `_fades_avx2` is this file once more, compiled for AVX2,
-which holds twice as many again: the same numbers, each rounded alike, so the same bytes.
+In double, or for 8-bit output in float, of which a vector holds twice as many; what pixels see is exact in both.
+A tile is so many vectors, row after row of eight pixels: with SSE2 sixteen of floats. `_fades_avx2` and `_fades_avx512`
+are this file again, compiled for processors that hold two and four times as many in one: the same numbers, each
+rounded alike, so the same bytes.
 
 Lengths are in units of the radius. A parameter `like` tells the lanes, and points to the desk's `bits`.
 """
@@ -11,17 +12,19 @@ Lengths are in units of the radius. A parameter `like` tells the lanes, and poin
 import cython
 from cython.cimports.penink_cli.reconstruction._desk import Desk
 from cython.cimports.penink_cli.reconstruction._lanes import (
-    ROW_OF_DOUBLES,
-    ROW_OF_FLOATS,
     Doubles,
     Floats,
     Lanes,
+    among,
+    by_column,
+    by_row,
     ease,
     fill,
     lanes_at,
     less,
-    number,
+    number_at,
     root,
+    vectors,
 )
 
 COMPILED = cython.compiled
@@ -33,37 +36,24 @@ FAR = cython.declare(cython.double, 1e30)  # a distance no path has
 @cython.nogil
 @cython.exceptval(check=False)
 def measure(
-    like: cython.pointer[Lanes],
-    desk: Desk,
-    slot: cython.int,
-    ny: cython.int,
-    x: cython.double,
-    y: cython.double,
+    like: cython.pointer[Lanes], desk: Desk, slot: cython.int, ny: cython.int, x: cython.double, y: cython.double
 ) -> cython.void:
     """Distance of each pixel of the tile from a node, FAR from where it is not seen."""
-    r: cython.Py_ssize_t
-    h: cython.Py_ssize_t
-    row: cython.Py_ssize_t = ROW_OF_FLOATS if Lanes is Floats else ROW_OF_DOUBLES
+    k: cython.int
     vx: Lanes
     vy: Lanes
     far: Lanes
+    across: Lanes
     down: Lanes
-    across: Lanes[4]
-    veil: cython.pointer[Lanes]
-    ux: cython.pointer[Lanes] = lanes_at(desk.ux, like)
-    out: cython.pointer[Lanes] = lanes_at(desk.nodes, like) + 8 * row * slot
-    seen: cython.ulonglong = desk.node_mask[slot]
+    out: cython.pointer[Lanes] = lanes_at(desk.nodes, like) + vectors(8, like) * slot
+    hidden: cython.ulonglong = ~desk.node_mask[slot]
     fill(cython.address(vx), x)
     fill(cython.address(vy), y)
     fill(cython.address(far), FAR)
-    for h in range(row):
-        across[h] = (ux[h] - vx) * (ux[h] - vx)
-    for r in range(ny):
-        veil = like + row * (~(seen >> (8 * r)) & 255)
-        down = number(desk.uy, r, like) - vy
-        down = down * down
-        for h in range(row):
-            out[row * r + h] = root(across[h] + down) + veil[h] * far
+    for k in range(vectors(ny, like)):
+        across = by_column(desk.ux, k, like) - vx
+        down = by_row(desk.uy, k, 1, like) - vy
+        out[k] = root(across * across + down * down) + among(hidden, k, like) * far
 
 
 @cython.cfunc
@@ -86,22 +76,14 @@ def cover(
     like: cython.pointer[Lanes], desk: Desk, s: cython.int, hidden: cython.ulonglong, nx: cython.int, ny: cython.int
 ) -> cython.void:
     """Attenuate a sample to which no path bends: it counts where it is seen, and only there; see `fade`."""
-    r: cython.Py_ssize_t
-    h: cython.Py_ssize_t
-    row: cython.Py_ssize_t = ROW_OF_FLOATS if Lanes is Floats else ROW_OF_DOUBLES
+    k: cython.int
     whole: cython.ulonglong = 0x0101010101010101
-    touched: Lanes
-    bare: cython.pointer[Lanes]
-    alpha: cython.pointer[Lanes] = lanes_at(desk.alpha, like) + 8 * row * s
-    most: cython.pointer[Lanes] = like + row * rows_of(hidden)
+    alpha: cython.pointer[Lanes] = lanes_at(desk.alpha, like) + vectors(8, like) * s
+    most: cython.p_void = number_at(like, 8 * rows_of(hidden), like)
     desk.shaded_rows[s] = rows_of(hidden)
     desk.faded_rows[s] = desk.shaded_rows[s] & rows_of(~hidden & (whole * (255 >> (8 - nx))))
-    for r in range(ny):
-        bare = like + row * ((hidden & 255) ^ 255)
-        hidden >>= 8
-        touched = number(most, r, like)
-        for h in range(row):
-            alpha[row * r + h] = less(bare[h], touched)
+    for k in range(vectors(ny, like)):
+        alpha[k] = less(among(~hidden, k, like), by_row(most, k, 1, like))
 
 
 @cython.cfunc
@@ -110,23 +92,21 @@ def cover(
 @cython.exceptval(check=False)
 def distances(like: cython.pointer[Lanes], desk: Desk, down: cython.int, across: cython.int) -> cython.pointer[Lanes]:
     """How far each pixel is from the sample −1 … 2 down and across the cell."""
-    r: cython.Py_ssize_t
-    h: cython.Py_ssize_t
+    k: cython.int
     place: cython.int = 4 * down + across + 5
-    row: cython.Py_ssize_t = ROW_OF_FLOATS if Lanes is Floats else ROW_OF_DOUBLES
-    ux: cython.pointer[Lanes] = lanes_at(desk.ux, like)
-    out: cython.pointer[Lanes] = lanes_at(desk.distance, like) + 8 * row * place
+    out: cython.pointer[Lanes] = lanes_at(desk.distance, like) + vectors(8, like) * place
     x: Lanes
     y: Lanes
-    away: Lanes
+    ux: Lanes
+    uy: Lanes
     if not (desk.known >> place) & 1:
         desk.known |= 1 << place
         fill(cython.address(x), across / desk.radius)
         fill(cython.address(y), down / desk.radius)
-        for r in range(8):
-            away = number(desk.uy, r, like) - y
-            for h in range(row):
-                out[row * r + h] = root((ux[h] - x) * (ux[h] - x) + away * away)
+        for k in range(vectors(8, like)):
+            ux = by_column(desk.ux, k, like) - x
+            uy = by_row(desk.uy, k, 1, like) - y
+            out[k] = root(ux * ux + uy * uy)
     return out
 
 
@@ -149,49 +129,35 @@ def fade(
     and zero in rows all of which see the sample, which are summed without. All rows are computed: which ones a shadow
     touches is anyone's guess, and a wrong one costs as much as a row.
     """
-    r: cython.Py_ssize_t
-    k: cython.Py_ssize_t
+    k: cython.int
     m: cython.int
-    h: cython.Py_ssize_t
-    row: cython.Py_ssize_t = ROW_OF_FLOATS if Lanes is Floats else ROW_OF_DOUBLES
+    n: cython.int = vectors(ny, like)
     one: Lanes
     three: Lanes
     length: Lanes
-    touched: Lanes
-    bare: cython.pointer[Lanes]
     nodes: cython.pointer[Lanes] = lanes_at(desk.nodes, like)
-    near: cython.pointer[Lanes] = nodes + 8 * row * desk.bend[0]
-    alpha: cython.pointer[Lanes] = lanes_at(desk.alpha, like) + 8 * row * s
+    near: cython.pointer[Lanes] = nodes + vectors(8, like) * desk.bend[0]
+    alpha: cython.pointer[Lanes] = lanes_at(desk.alpha, like) + vectors(8, like) * s
     straight: cython.pointer[Lanes] = distances(like, desk, down, across)
-    most: cython.pointer[Lanes] = like + row * rows_of(hidden)
+    most: cython.p_void = number_at(like, 8 * rows_of(hidden), like)
     fill(cython.address(one), 1.0)
     fill(cython.address(three), 3.0)
     fill(cython.address(length), desk.bend_length[0])
     desk.shaded_rows[s] = desk.faded_rows[s] = rows_of(hidden)
     if bends == 1:
         length = length - one
-        for r in range(ny):
-            bare = like + row * ((hidden & 255) ^ 255)
-            hidden >>= 8
-            touched = number(most, r, like)
-            for h in range(row):
-                k = row * r + h
-                alpha[k] = ease(straight[k] - (near[k] + length), bare[h], touched, three)
+        for k in range(n):
+            alpha[k] = ease(straight[k] - (near[k] + length), among(~hidden, k, like), by_row(most, k, 1, like), three)
         return
-    for k in range(row * ny):
+    for k in range(n):
         alpha[k] = near[k] + length
     for m in range(1, bends):
-        near = nodes + 8 * row * desk.bend[m]
+        near = nodes + vectors(8, like) * desk.bend[m]
         fill(cython.address(length), desk.bend_length[m])
-        for k in range(row * ny):
+        for k in range(n):
             alpha[k] = less(near[k] + length, alpha[k])
-    for r in range(ny):
-        bare = like + row * ((hidden & 255) ^ 255)
-        hidden >>= 8
-        touched = number(most, r, like)
-        for h in range(row):
-            k = row * r + h
-            alpha[k] = ease(straight[k] - (alpha[k] - one), bare[h], touched, three)
+    for k in range(n):
+        alpha[k] = ease(straight[k] - (alpha[k] - one), among(~hidden, k, like), by_row(most, k, 1, like), three)
 
 
 @cython.cfunc

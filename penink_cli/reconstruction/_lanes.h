@@ -1,9 +1,9 @@
-/* Numbers side by side: four floats, or as many floats or doubles as the machine computes at once.
+/* Numbers side by side: four floats, or as many floats or doubles as the machine computes at once, a *vector*.
  *
  * Left to itself the compiler vectorises the loops over the eight pixels of a row only in part, and keeps their sums in
  * memory. Arithmetic on these types is that of their numbers, each rounded as it would be alone, so the bytes of the
- * output depend neither on them nor on how many there are: sixteen bytes with SSE2 and NEON, thirty-two with AVX2, for
- * which a kernel is compiled a second time. Where there is neither the loops say the same.
+ * output depend neither on them nor on how many there are: sixteen bytes with SSE2 and NEON, thirty-two with AVX2 and
+ * sixty-four with AVX-512, for which kernels are compiled again. Where there is nothing of it the loops say the same.
  */
 #ifndef PENINK_LANES_H
 #define PENINK_LANES_H
@@ -11,7 +11,9 @@
 #include <math.h>
 #include <string.h>
 
-#ifdef __AVX2__
+#if defined(__AVX512F__)
+#define LANES 64
+#elif defined(__AVX2__)
 #define LANES 32
 #else
 #define LANES 16
@@ -26,24 +28,30 @@
 typedef float Four __attribute__((vector_size(16), may_alias));
 typedef float Floats __attribute__((vector_size(LANES), may_alias));
 typedef double Doubles __attribute__((vector_size(LANES), may_alias));
+#if LANES > 32
+typedef double Quads __attribute__((vector_size(32), may_alias));
+#else
+typedef double Quads __attribute__((vector_size(LANES), may_alias));
+#endif
 
 enum {
     FLOATS = LANES / sizeof(float), /* in one vector */
     DOUBLES = LANES / sizeof(double),
-    ROW_OF_FLOATS = 8 / FLOATS, /* vectors in a row of eight pixels */
-    ROW_OF_DOUBLES = 8 / DOUBLES,
-    FOUR_DOUBLES = 4 / DOUBLES, /* vectors that hold four */
+    FOUR_QUADS = 32 / sizeof(Quads), /* vectors of Quads that hold four */
     PACK = 4 * FLOATS /* floats that make a vector of bytes */
 };
 
 #define EACH(v) for (unsigned i = 0; i < sizeof(v) / sizeof((v)[0]); i++)
 
-/* Whether the processor this runs on has AVX2. */
-static inline int has_avx2(void) {
+/* How many numbers side by side the processor this runs on is good at, in bytes. AVX-512 counts from the generation on
+ * that has VBMI2: earlier ones slow their clock down for it. */
+static inline int lanes_here(void) {
 #ifdef MAY_HAVE_AVX2
-    return __builtin_cpu_supports("avx2") != 0;
+    if (!__builtin_cpu_supports("avx2")) return 16;
+    return __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw") &&
+           __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vbmi2") ? 64 : 32;
 #else
-    return 0;
+    return 16;
 #endif
 }
 
@@ -64,7 +72,25 @@ static inline int above_four(Four v, Four w) { int m = 0; EACH(v) m |= (v[i] > w
 
 #endif
 
-#ifdef __AVX2__
+#if LANES == 64
+
+static inline Floats all_floats(float x) { return (Floats)_mm512_set1_ps(x); }
+static inline Doubles all_doubles(double x) { return (Doubles)_mm512_set1_pd(x); }
+static inline Floats root_floats(Floats v) { return (Floats)_mm512_sqrt_ps((__m512)v); }
+static inline Doubles root_doubles(Doubles v) { return (Doubles)_mm512_sqrt_pd((__m512d)v); }
+static inline Floats less_floats(Floats v, Floats w) { return (Floats)_mm512_min_ps((__m512)v, (__m512)w); }
+static inline Doubles less_doubles(Doubles v, Doubles w) { return (Doubles)_mm512_min_pd((__m512d)v, (__m512d)w); }
+static inline Floats more_floats(Floats v, Floats w) { return (Floats)_mm512_max_ps((__m512)v, (__m512)w); }
+static inline Doubles more_doubles(Doubles v, Doubles w) { return (Doubles)_mm512_max_pd((__m512d)v, (__m512d)w); }
+static inline int above_floats(Floats v, Floats w) {
+    return _mm512_cmp_ps_mask((__m512)v, (__m512)w, _CMP_GT_OQ);
+}
+static inline int above_doubles(Doubles v, Doubles w) {
+    return _mm512_cmp_pd_mask((__m512d)v, (__m512d)w, _CMP_GT_OQ);
+}
+static inline Quads all_quads(double x) { return (Quads)_mm256_set1_pd(x); }
+
+#elif LANES == 32
 
 static inline Floats all_floats(float x) { return (Floats)_mm256_set1_ps(x); }
 static inline Doubles all_doubles(double x) { return (Doubles)_mm256_set1_pd(x); }
@@ -80,11 +106,13 @@ static inline int above_floats(Floats v, Floats w) {
 static inline int above_doubles(Doubles v, Doubles w) {
     return _mm256_movemask_pd(_mm256_cmp_pd((__m256d)v, (__m256d)w, _CMP_GT_OQ));
 }
+static inline Quads all_quads(double x) { return all_doubles(x); }
 
 #else
 
 static inline Floats all_floats(float x) { return all_four(x); }
 static inline Doubles all_doubles(double x) { return (Doubles){x, x}; }
+static inline Quads all_quads(double x) { return all_doubles(x); }
 static inline Floats less_floats(Floats v, Floats w) { return less_four(v, w); }
 static inline Floats more_floats(Floats v, Floats w) { return more_four(v, w); }
 static inline int above_floats(Floats v, Floats w) { return above_four(v, w); }
@@ -181,21 +209,62 @@ static inline unsigned long long below_zero(float v, float x, float y, float *le
     return m;
 }
 
+/* A tile of 8 × 8 pixels as vectors, row after row: for each pixel of vector k the number of its row, `stride` apart, */
+static inline Floats floats_by_row(const float *x, int k, int stride) {
+#if LANES == 64
+    const __m256 one = _mm256_set1_ps(x[2 * k * stride]), other = _mm256_set1_ps(x[(2 * k + 1) * stride]);
+    return (Floats)_mm512_insertf32x8(_mm512_castps256_ps512(one), other, 1);
+#else
+    return all_floats(x[k * FLOATS / 8 * stride]);
+#endif
+}
+static inline Doubles doubles_by_row(const double *x, int k, int stride) { return all_doubles(x[k * DOUBLES / 8 * stride]); }
+
+/* that of its column, */
+static inline Floats floats_by_column(const float *x, int k) {
+    Floats v;
+#if LANES == 64
+    (void)k;
+    v = (Floats)_mm512_broadcast_f32x8(_mm256_loadu_ps(x));
+#else
+    memcpy(&v, x + k * FLOATS % 8, sizeof v);
+#endif
+    return v;
+}
+static inline Doubles doubles_by_column(const double *x, int k) {
+    Doubles v;
+    memcpy(&v, x + k * DOUBLES % 8, sizeof v);
+    return v;
+}
+
+/* and one where it is in a set, else zero; bits: a table of bytes as eight such numbers. */
+static inline Floats floats_among(const float *bits, unsigned long long set, int k) {
+#if LANES == 64
+    (void)bits;
+    return (Floats)_mm512_maskz_mov_ps((__mmask16)(set >> 16 * k), _mm512_set1_ps(1));
+#else
+    return floats_by_column(bits + 8 * (set >> k * FLOATS / 8 * 8 & 255), k);
+#endif
+}
+static inline Doubles doubles_among(const double *bits, unsigned long long set, int k) {
+    return doubles_by_column(bits + 8 * (set >> k * DOUBLES / 8 * 8 & 255), k);
+}
+
 /* Eight numbers below 256, rounded half up and stored as bytes, negative ones as 0. */
-static inline void keep_bytes(const Floats *v, unsigned char *out) {
+static inline void keep_bytes(const float *v, unsigned char *out) {
 #ifdef __SSE2__
 #ifdef __AVX2__
-    __m256i both = _mm256_cvttps_epi32((__m256)(v[0] + all_floats(0.5f)));
+    __m256i both = _mm256_cvttps_epi32(_mm256_loadu_ps(v) + _mm256_set1_ps(0.5f));
     __m128i a = _mm256_castsi256_si128(both), b = _mm256_extracti128_si256(both, 1);
 #else
-    __m128i a = _mm_cvttps_epi32((__m128)(v[0] + all_four(0.5f)));
-    __m128i b = _mm_cvttps_epi32((__m128)(v[1] + all_four(0.5f)));
+    __m128i a = _mm_cvttps_epi32((__m128)(four_at(v) + all_four(0.5f)));
+    __m128i b = _mm_cvttps_epi32((__m128)(four_at(v + 4) + all_four(0.5f)));
 #endif
     a = _mm_packs_epi32(a, b);
     _mm_storel_epi64((__m128i *)out, _mm_packus_epi16(a, a));
 #else
     for (int i = 0; i < 8; i++) {
-        float x = ((const float *)v)[i] + 0.5f;
+        float x = v[i] + 0.5f;
         out[i] = x > 0 ? (unsigned char)x : 0;
     }
 #endif
@@ -203,7 +272,14 @@ static inline void keep_bytes(const Floats *v, unsigned char *out) {
 
 /* Four vectors, numbers of any size, each rounded half up and stored as a byte 0 … most. */
 static inline void pack_bytes(const Floats *v, unsigned char most, unsigned char *out) {
-#ifdef __AVX2__
+#if LANES == 64
+    const __m512 half = _mm512_set1_ps(0.5f);
+    const __m512i order = _mm512_setr_epi32(0, 4, 8, 12, 1, 5, 9, 13, 2, 6, 10, 14, 3, 7, 11, 15);
+    __m512i a = _mm512_packs_epi32(_mm512_cvttps_epi32(v[0] + half), _mm512_cvttps_epi32(v[1] + half));
+    __m512i b = _mm512_packs_epi32(_mm512_cvttps_epi32(v[2] + half), _mm512_cvttps_epi32(v[3] + half));
+    a = _mm512_permutexvar_epi32(order, _mm512_packus_epi16(a, b));
+    _mm512_storeu_si512(out, _mm512_min_epu8(a, _mm512_set1_epi8((char)most)));
+#elif LANES == 32
     const __m256 half = _mm256_set1_ps(0.5f);
     const __m256i order = _mm256_setr_epi32(0, 4, 1, 5, 2, 6, 3, 7);
     __m256i a = _mm256_packs_epi32(_mm256_cvttps_epi32(v[0] + half), _mm256_cvttps_epi32(v[1] + half));

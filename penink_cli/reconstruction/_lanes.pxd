@@ -4,17 +4,17 @@ cdef extern from "_lanes.h" nogil:
     enum:
         FLOATS
         DOUBLES
-        ROW_OF_FLOATS
-        ROW_OF_DOUBLES
-        FOUR_DOUBLES
+        FOUR_QUADS
         PACK
     ctypedef float Four  # four floats, or as many as
     ctypedef float Floats  # the machine computes at once,
-    ctypedef double Doubles  # or doubles: these are arrays, but arithmetic is written as on their numbers
-    int has_avx2()
+    ctypedef double Doubles  # or doubles,
+    ctypedef double Quads  # or up to four of those: these are arrays, but arithmetic is written as on their numbers
+    int lanes_here()
     Four all_four(float x)
     Floats all_floats(float x)
     Doubles all_doubles(double x)
+    Quads all_quads(double x)
     Four four_at(const float* x)
     Four less_four(Four v, Four w)
     Four more_four(Four v, Four w)
@@ -31,7 +31,13 @@ cdef extern from "_lanes.h" nogil:
     Floats chosen_floats(Floats t, Floats v, Floats w)
     Doubles chosen_doubles(Doubles t, Doubles v, Doubles w)
     unsigned long long below_zero(float v, float x, float y, float* least, int wide)
-    void keep_bytes(const Floats* v, unsigned char* out)
+    Floats floats_by_row(const float* x, int k, int stride)
+    Doubles doubles_by_row(const double* x, int k, int stride)
+    Floats floats_by_column(const float* x, int k)
+    Doubles doubles_by_column(const double* x, int k)
+    Floats floats_among(const float* bits, unsigned long long set, int k)
+    Doubles doubles_among(const double* bits, unsigned long long set, int k)
+    void keep_bytes(const float* v, unsigned char* out)
     void pack_bytes(const Floats* v, unsigned char most, unsigned char* out)
     void turn_sets(const unsigned char* sets, int* out)
     int lowest(unsigned long long set)
@@ -51,6 +57,36 @@ cdef inline Lanes number(void* numbers, Py_ssize_t i, Lanes* like) noexcept nogi
         return all_floats((<float*>numbers)[i])
     else:
         return all_doubles((<double*>numbers)[i])
+
+cdef inline int vectors(int rows, Lanes* like) noexcept nogil:  # that make up so many rows of eight, or a little more
+    if Lanes is Floats:
+        return (8 * rows + FLOATS - 1) // FLOATS
+    else:
+        return (8 * rows + DOUBLES - 1) // DOUBLES
+
+cdef inline Lanes by_row(void* numbers, int k, int stride, Lanes* like) noexcept nogil:  # of the pixels of vector k
+    if Lanes is Floats:
+        return floats_by_row(<float*>numbers, k, stride)
+    else:
+        return doubles_by_row(<double*>numbers, k, stride)
+
+cdef inline Lanes by_column(void* numbers, int k, Lanes* like) noexcept nogil:
+    if Lanes is Floats:
+        return floats_by_column(<float*>numbers, k)
+    else:
+        return doubles_by_column(<double*>numbers, k)
+
+cdef inline Lanes among(unsigned long long set, int k, Lanes* bits) noexcept nogil:  # one where they are in the set
+    if Lanes is Floats:
+        return floats_among(<float*>bits, set, k)
+    else:
+        return doubles_among(<double*>bits, set, k)
+
+cdef inline void* number_at(void* numbers, Py_ssize_t i, Lanes* like) noexcept nogil:  # where number i of an array is
+    if Lanes is Floats:
+        return <float*>numbers + i
+    else:
+        return <double*>numbers + i
 
 cdef inline Lanes root(Lanes v) noexcept nogil:
     if Lanes is Floats:
@@ -97,9 +133,9 @@ cdef inline Lanes load(void* place, Lanes* like) noexcept nogil:  # from any pla
 cdef inline void store(void* place, Lanes v) noexcept nogil:
     memcpy(place, &v, sizeof(Lanes))
 
-ctypedef fused Columns:  # numbers of the four columns of samples: one vector, or FOUR_DOUBLES
+ctypedef fused Columns:  # numbers of the four columns of samples: one vector, or FOUR_QUADS
     Four
-    Doubles
+    Quads
 
 cdef inline Columns* columns_at(void* place, Columns* like) noexcept nogil:
     return <Columns*>place
@@ -108,4 +144,4 @@ cdef inline Columns spread(void* numbers, int i, Columns* like) noexcept nogil: 
     if Columns is Four:
         return all_four((<float*>numbers)[i])
     else:
-        return all_doubles((<double*>numbers)[i])
+        return all_quads((<double*>numbers)[i])

@@ -22,13 +22,13 @@ stored = cython.fused_type(cython.uchar, cython.ushort, cython.double)
 def lay_out_rows(desk: Desk, tile: Tile, yc: cython.pointer[real], yb: cython.pointer[real]) -> cython.void:
     """Lay ready what belongs to the rows of pixels of a tile; yc, yb: (8, 4) weights."""
     k: cython.int
+    r: cython.int
     uy: real[8]
     ky: real[64]
-    for k in range(64):
-        ky[k] = 0.0
-    for k in range(4 * tile.ny):
-        ky[k] = yc[k]
-        ky[32 + k] = yb[k]
+    for k in range(32):  # beyond the last row as in it
+        r = k if k < 4 * tile.ny else 4 * (tile.ny - 1) + (k & 3)
+        ky[k] = yc[r]
+        ky[32 + k] = yb[r]
     if memcmp(desk.ky, ky, 64 * cython.sizeof(ky[0])) != 0:
         memcpy(desk.ky, ky, 64 * cython.sizeof(ky[0]))
         desk.known_weights[0] = desk.known_weights[1] = 0

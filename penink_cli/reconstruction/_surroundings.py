@@ -12,7 +12,7 @@ from cython.cimports.penink_cli.reconstruction._lanes import (
     above_four,
     all_four,
     four_at,
-    has_avx2,
+    lanes_here,
     lowest,
     size_four,
 )
@@ -35,7 +35,7 @@ class Surroundings(Pixels):
     """
 
     def __init__(self, scene: Scene, step_x: cython.double, step_y: cython.double):
-        self.wide = has_avx2()
+        self.wide = lanes_here() > 16
         self.scene = scene
         self.step_x = step_x
         self.step_y = step_y

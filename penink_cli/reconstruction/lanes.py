@@ -1,6 +1,6 @@
-"""The vector kernels in the make that suits this processor: compiled once for any, and once more for AVX2.
+"""The vector kernels in the make that suits this processor: compiled once for any, again for AVX2 and for AVX-512.
 
-Both compute the same numbers, each rounded alike, so no byte of output depends on which of them is taken.
+All compute the same numbers, each rounded alike, so no byte of output depends on which of them is taken.
 """
 
 from __future__ import annotations
@@ -10,16 +10,22 @@ from types import ModuleType
 
 from penink_cli.reconstruction import _desk, _tile
 
-WIDE = _desk.has_wide_lanes()
+MAKES = {
+    "_separable": {16: "", 32: "_avx2"},  # runs of eight columns at a time do not fill a vector of sixteen
+    "_fades": {16: "", 32: "_avx2", 64: "_avx512"},
+    "_sums": {16: "", 32: "_avx2", 64: "_avx512"},
+}
+LANES = _desk.lanes()
 
 
 def kernel(name: str) -> ModuleType:
-    """The compiled kernel of that name, in the better make if it can run here."""
-    return import_module(f"penink_cli.reconstruction.{name}_avx2" if WIDE else f"penink_cli.reconstruction.{name}")
+    """The compiled kernel of that name, in the best make that can run here."""
+    best = max(lanes for lanes in MAKES[name] if lanes <= LANES)
+    return import_module(f"penink_cli.reconstruction.{name}{MAKES[name][best]}")
 
 
 def furnish(tile: _tile.Tile, desk: _desk.Desk) -> None:
-    """Have the sets of pixels of a tile, and the arithmetic on a desk, computed in the better make."""
-    tile.wide = WIDE
+    """Have the sets of pixels of a tile, and the arithmetic on a desk, computed in the best make."""
+    tile.wide = LANES > 16
     kernel("_fades").furnish(desk)
     kernel("_sums").furnish(desk)
