@@ -28,6 +28,8 @@ MOST = 4
 #: Each of them begins and ends so many times further in than the next one towards the middle, in widths of what is
 #: painted, at the start and at the end: cut off straight they were bars.
 TAPER = (2.0, 3.0)
+#: But no further than that much of a leg between knots, or small dark things, such as pupils, would lose their weight.
+MOST_OF_LEG = 0.3
 #: What is fainter than a line of the pen is drawn with a finer one, of so much of its width at the least,
 #: and no finer than the device's pixels bear.
 FINEST = 0.55
@@ -164,18 +166,19 @@ def strokes_along(sheet: Sheet, pen_pt: float, painted_pt: float, fixed: bool) -
         broad = breadth(tone, where, nx, ny, float(cell.min()))
         side_by_side = int(min(max(round(broad / (1.1 * painted_pt)), 1), MOST))
         pen = pen_pt if fixed else min(max(pen_pt * broad / painted_pt, FINEST * pen_pt, 1.5 * sheet.gain_pt), pen_pt)
+        n = max(1, round(run[-1] / KNOT_PT))
+        s = np.linspace(0.0, run[-1], n + 1)
+        knots = np.column_stack([np.interp(s, run, p[:, 0]), np.interp(s, run, p[:, 1])])
+        slope = np.gradient(knots, axis=0) / 3 if n > 1 else np.repeat(knots[1:] - knots[:1], 2, axis=0) / 3
+        length = np.maximum(np.sqrt((slope * slope).sum(axis=1)), 1e-9)[:, None]
+        ahead = slope / length
+        normal = np.column_stack([-ahead[:, 1], ahead[:, 0]])
         for k in range(side_by_side):
             aside = k - (side_by_side - 1) / 2
-            start, end = abs(aside) * painted_pt * TAPER[0], run[-1] - abs(aside) * painted_pt * TAPER[1]
-            if end - start < SHORTEST_PT:
-                continue
-            n = max(1, round((end - start) / KNOT_PT))
-            s = np.linspace(start, end, n + 1)
-            knots = np.column_stack([np.interp(s, run, p[:, 0]), np.interp(s, run, p[:, 1])])
-            slope = np.gradient(knots, axis=0) / 3 if n > 1 else np.repeat(knots[1:] - knots[:1], 2, axis=0) / 3
-            length = np.maximum(np.sqrt((slope * slope).sum(axis=1)), 1e-9)[:, None]
-            normal = np.column_stack([-slope[:, 1], slope[:, 0]]) / length
+            further = min(abs(aside) * painted_pt, MOST_OF_LEG * run[-1] / n / max(TAPER))
             moved = knots + normal * (aside * broad / side_by_side)
+            moved[0] += ahead[0] * (further * TAPER[0])
+            moved[-1] -= ahead[-1] * (further * TAPER[1])
             inner = np.stack([moved[:-1] + slope[:-1], moved[1:] - slope[1:], moved[1:]], axis=1).reshape(-1, 2)
             parts.append(np.concatenate([moved[:1], inner]))
             sizes.append(3 * n + 1)
