@@ -50,7 +50,7 @@ def read_edges(path: str | None, max_pixels: int = 0) -> EdgeList | None:
     return edges
 
 
-def warn_of_another_shape(edges: EdgeList, photo: GreyImage) -> None:
+def warn_of_another_shape(edges: EdgeList, photo: GreyImage, name: str = "this") -> None:
     """Warn where no resizing, rounded to whole pixels, leads from the edges' frame to the photo.
 
     The photo may be larger or smaller than the one the edges were found in, but hardly of another shape.
@@ -60,7 +60,7 @@ def warn_of_another_shape(edges: EdgeList, photo: GreyImage) -> None:
     most = min((width + 1) / edges.width, (height + 1) / edges.height)
     if least > most:
         frame = f"{edges.width} x {edges.height}"
-        warn(f"the edges are of a picture of {frame} pixels, and this of {width} x {height} has another shape")
+        warn(f"the edges are of a picture of {frame} pixels, and {name} of {width} x {height} has another shape")
 
 
 def read_illustration(path: str | None, max_pixels: int) -> Illustration:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import click
 
-from penink_cli.commands.inputs import only_one_standard_input, read_edges, read_grey, read_photo
+from penink_cli.commands.inputs import only_one_standard_input, read_edges, read_grey, read_photo, warn_of_another_shape
 from penink_cli.options import SIZE, Finite, edges_option, filter_options, reporter, threads_option, verbose_option
 from penink_cli.streams import writing
 
@@ -75,9 +75,14 @@ def reduce(
     only_one_standard_input(file, edges_file, photo_file or "")
     edges = read_edges(edges_file, max_pixels)
     samples = read_grey(file, max_pixels)
-    photo = read_photo(photo_file, max_pixels).grey if photo_file else None
     height, width = samples.values.shape
     edges = edges or EdgeList(width, height)
+    warn_of_another_shape(edges, samples)
+    photo = None
+    if photo_file:
+        picture = read_photo(photo_file, max_pixels)
+        warn_of_another_shape(edges, picture, "the photo")
+        photo = picture.grey
     if factor is not None:
         size = max(1, round(width / factor)), max(1, round(height / factor))
     if size is not None and (size[0] > width or size[1] > height):
