@@ -27,6 +27,7 @@ from penink_cli.reconstruction.enlarge import reconstruct
 from penink_cli.reconstruction.extraction import segments
 from penink_cli.reconstruction.fit import AREA, POINT
 from penink_cli.reconstruction.reduction import reduce
+from penink_cli.reconstruction.shrinking import shrunk
 
 Grey32 = npt.NDArray[np.float32]
 
@@ -53,22 +54,7 @@ class _View:
         shrink = (self.picture.size / most) ** 0.5
         if shrink <= 1:
             return self
-        height, width = (max(1, round(side / shrink)) for side in self.picture.shape)
-        rows = 1 << 9
-        across = [_means(self.picture[top : top + rows], width) for top in range(0, self.picture.shape[0], rows)]
-        picture = _means(np.concatenate(across).T, height).T
-        return _View(np.ascontiguousarray(picture), self.blur / shrink, AREA)
-
-
-def _means(values: Grey32, count: int) -> Grey32:
-    """Means of values (h, w) over `count` equal parts of each row, which need not be whole pixels."""
-    width = values.shape[1]
-    sums = np.zeros((values.shape[0], width + 1))
-    np.cumsum(values, axis=1, out=sums[:, 1:])
-    at = np.linspace(0, width, count + 1)
-    left = np.minimum(at.astype(np.int64), width - 1)
-    upto = sums[:, left] + (at - left) * values[:, left]
-    return (np.diff(upto, axis=1) * (count / width)).astype(np.float32)
+        return _View(shrunk(self.picture, shrink), self.blur / shrink, AREA)
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,7 +5,7 @@ import pytest
 
 from penink_cli.errors import ParameterError
 from penink_cli.model import EdgeList
-from penink_cli.reconstruction import grid
+from penink_cli.reconstruction import grid, shrinking
 from penink_cli.reconstruction.grid import choose_grid
 
 
@@ -43,7 +43,7 @@ def test_the_grid_of_a_large_photo_is_found_in_a_smaller_view_of_it(noise, monke
 def test_means_over_parts_that_are_no_whole_pixels():
     rng = np.random.default_rng(3)
     values = rng.random((3, 10)).astype(np.float32)
-    found = grid._means(values, 4)
+    found = shrinking._means(values, 4)
     expected = np.repeat(values, 2, axis=1).reshape(3, 4, 5).mean(axis=2)  # two halves a pixel, five a part
     assert np.allclose(found, expected, atol=1e-6)
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from penink_cli.model import EdgeList
-from penink_cli.reconstruction import _banded, _fit, _rows
+from penink_cli.reconstruction import _banded, _fit, _rows, reduction
 from penink_cli.reconstruction.enlarge import reconstruct
 from penink_cli.reconstruction.fit import fit_samples
 from penink_cli.reconstruction.reduction import reduce
@@ -54,6 +54,17 @@ def test_the_fit_is_the_same_for_any_number_of_threads():
     edges = EdgeList(120, 90, ends, np.array([[k, k + 1] for k in range(0, 38)]))
     one, two, five = (reduce(photo, edges, 60, 45, photo=photo, fit="lsq", threads=n) for n in (1, 2, 5))
     assert np.array_equal(one, two) and np.array_equal(one, five)
+
+
+def test_of_many_pixels_a_sample_a_smaller_view_is_fitted_to(monkeypatch):
+    y, x = np.mgrid[:300, :400].astype(np.float32)
+    photo = np.where((x - 190) ** 2 + (y - 160) ** 2 < 90**2, 0.2 + 0.001 * x, 0.8 - 0.0005 * y).astype(np.float32)
+    turn = np.arange(40) * 2 * np.pi / 40
+    circle = np.column_stack([190.5 + 90 * np.cos(turn), 160.5 + 90 * np.sin(turn)])
+    edges = EdgeList(400, 300, circle, np.column_stack([np.arange(40), (np.arange(40) + 1) % 40]))
+    quick = reduce(photo, edges, 16, 12, photo=photo, fit="lsq", blur=0.0)
+    monkeypatch.setattr(reduction, "_ENOUGH", 1000)
+    assert np.abs(quick - reduce(photo, edges, 16, 12, photo=photo, fit="lsq", blur=0.0)).max() < 0.005
 
 
 @pytest.mark.parametrize(
