@@ -31,13 +31,13 @@ cdef class Pixels:
         return 1 if value > extent else (-1 if -value > extent else 0)
 
     @cython.final
-    cdef inline double nearest(self, double x, double y) noexcept nogil:
-        # distance from a point to the box of the tile, or a little less
+    cdef inline bint beyond(self, double x, double y, double limit) noexcept nogil:
+        # whether the box of the tile is that far from a point; not in doubt by less than the box's slack
         cdef double dx = fabs(self.middle_x - x) - self.extent_x
         cdef double dy = fabs(self.middle_y - y) - self.extent_y
         dx += fabs(dx)  # twice what is above zero, without a branch
         dy += fabs(dy)
-        return 0.5 * sqrt(dx * dx + dy * dy)
+        return dx * dx + dy * dy >= 4.0 * limit * limit
 
     @cython.final
     cdef inline double farthest(self, double x, double y) noexcept nogil:

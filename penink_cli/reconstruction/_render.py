@@ -74,6 +74,9 @@ def lay_out(
         desk.known = 0
     for j in range(4):
         f = samples + cython.cast(cython.Py_ssize_t, tile.row[j]) * tile.scene.width
+        if tile.column[3] == tile.column[0] + 3:
+            memcpy(values + 4 * j, f + tile.column[0], 4 * cython.sizeof(f[0]))
+            continue
         for i in range(4):
             values[4 * j + i] = f[tile.column[i]]
 

@@ -44,7 +44,7 @@ def find_bends(desk: Desk, tile: Tile, s: cython.int) -> cython.int:
         node = tile.finder.pool_node[m]
         if tile.node_stamp[node] != tile.now:
             v = tile.scene.node_vertex[node]
-            if d + tile.nearest(tile.scene.vx[v], tile.scene.vy[v]) >= limit:
+            if tile.beyond(tile.scene.vx[v], tile.scene.vy[v], limit - d):
                 continue
             tile.node_stamp[node] = tile.now
             seen = tile.node_mask(node)
