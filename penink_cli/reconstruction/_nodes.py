@@ -9,7 +9,7 @@ one test replaces "within the sector" and prunes nearly all bends of a smooth ch
 
 import cython
 from cython.cimports.libc.math import sqrt
-from cython.cimports.libc.stdlib import malloc, realloc
+from cython.cimports.libc.stdlib import free, malloc, realloc
 from cython.cimports.penink_cli.arrangement._predicates import orient
 from cython.cimports.penink_cli.reconstruction._scene import BLOCK, Scene, doubles, ints
 
@@ -162,7 +162,10 @@ def home(scene: Scene, n: cython.int) -> cython.int:
 @cython.nogil
 @cython.exceptval(check=False)
 def find_arcs(scene: Scene) -> cython.void:
-    """The arcs of the path graph: taut at both ends, unobstructed, no third vertex touched, at most `reach` long."""
+    """The arcs of the path graph: taut at both ends, unobstructed, no third vertex touched, at most `reach` long.
+
+    Each pair of nodes is looked at once; then its arc is entered with both.
+    """
     u: cython.int
     v: cython.int
     n: cython.int
@@ -175,10 +178,9 @@ def find_arcs(scene: Scene) -> cython.void:
     d: cython.double
     c0: cython.int
     c1: cython.int
-    scene.arc_to = cython.cast(cython.p_int, malloc(size * cython.sizeof(cython.int)))
-    scene.arc_length = cython.cast(cython.p_double, malloc(size * cython.sizeof(cython.double)))
+    ends: cython.p_int = cython.cast(cython.p_int, malloc(2 * size * cython.sizeof(cython.int)))
+    lengths: cython.p_double = cython.cast(cython.p_double, malloc(size * cython.sizeof(cython.double)))
     for n in range(scene.n_nodes):
-        scene.arc_start[n] = used
         u = scene.node_vertex[n]
         x = scene.vx[u]
         y = scene.vy[u]
@@ -189,19 +191,33 @@ def find_arcs(scene: Scene) -> cython.void:
                 scene.node_start[row * scene.node_across + c0], scene.node_start[row * scene.node_across + c1]
             ):
                 v = scene.node_sorted[k]
-                d = arc(scene, n, v)
-                if d < 0.0 or d > scene.reach:
+                d = arc(scene, n, v) if v > n else -1.0
+                if d < 0.0:
                     continue
                 if used == size:
                     size *= 2
-                    scene.arc_to = cython.cast(cython.p_int, realloc(scene.arc_to, size * cython.sizeof(cython.int)))
-                    scene.arc_length = cython.cast(
-                        cython.p_double, realloc(scene.arc_length, size * cython.sizeof(cython.double))
-                    )
-                scene.arc_to[used] = v
-                scene.arc_length[used] = d
+                    ends = cython.cast(cython.p_int, realloc(ends, 2 * size * cython.sizeof(cython.int)))
+                    lengths = cython.cast(cython.p_double, realloc(lengths, size * cython.sizeof(cython.double)))
+                ends[2 * used] = n
+                ends[2 * used + 1] = v
+                lengths[used] = d
                 used += 1
-    scene.arc_start[scene.n_nodes] = used
+                scene.arc_start[n] += 1
+                scene.arc_start[v] += 1
+    scene.arc_to = cython.cast(cython.p_int, malloc((2 * used + 1) * cython.sizeof(cython.int)))
+    scene.arc_length = cython.cast(cython.p_double, malloc((2 * used + 1) * cython.sizeof(cython.double)))
+    c0 = 0
+    for n in range(scene.n_nodes + 1):
+        c0 += scene.arc_start[n]
+        scene.arc_start[n] = c0
+    for k in range(used - 1, -1, -1):  # from the end of each node's arcs down, so that their start is what is left
+        for row in range(2):
+            n = ends[2 * k + row]
+            scene.arc_start[n] -= 1
+            scene.arc_to[scene.arc_start[n]] = ends[2 * k + 1 - row]
+            scene.arc_length[scene.arc_start[n]] = lengths[k]
+    free(ends)
+    free(lengths)
 
 
 @cython.cfunc
