@@ -269,7 +269,8 @@ class Sheet {
     };
     for (let j = 0; j < down; j++) soften(j * across, 1, across);
     for (let i = 0; i < across; i++) soften(i, across, down);
-    lack.forEach((more, k) => { bare[k] = clamp(bare[k] - more / 255, 0, 1); });
+    const taken = this.layer.screens[0].level ? 1 : 0.5;  // of textures that are not lines half of the lack is chance
+    lack.forEach((more, k) => { lack[k] = more *= taken; bare[k] = clamp(bare[k] - more / 255, 0, 1); });
     const place = (k, per, first, count) => {
       const at = (k + 0.5) * per - 0.5 - first, low = clamp(Math.floor(at), 0, count - 1);
       return [low, Math.min(low + 1, count - 1), clamp(at - low, 0, 1)];
