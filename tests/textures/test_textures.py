@@ -67,7 +67,7 @@ def test_bricks_are_hatched_evenly_from_side_to_side():
     tile = find_texture("brick").strokes
     ends = [tile[i][[0, -1]] for i in range(len(tile))]
     feet = np.array([a[0] for a, b in ends if 0.8 < abs(a[0] - b[0]) < 6 and abs(a[1] - b[1]) > 5])
-    share, _ = np.histogram(feet % 36, bins=6, range=(0, 36))
+    share, _ = np.histogram(feet % 35.75, bins=6, range=(0, 35.75))
     assert len(feet) > 800 and share.std() < 0.25 * share.mean()
 
 
