@@ -30,3 +30,4 @@ cdef class Place:
     cdef void unite(self, int a, int b, double x, double y) noexcept nogil
     cdef void split(self, int e, int v) noexcept nogil
     cdef bint meeting(self, int a, int b, double* x, double* y) noexcept nogil
+    cdef void pass_by(self, int v) noexcept nogil

@@ -200,6 +200,16 @@ class Place:
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)
+    def pass_by(self, v: cython.int) -> cython.void:
+        """Link the two neighbours of v, which is gone then."""
+        u: cython.int = self.other(v, -1, 0)
+        x: cython.double = self.x[u]
+        y: cython.double = self.y[u]
+        self.unite(u, v, x, y)
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
     def split(self, e: cython.int, v: cython.int) -> cython.void:
         """Lead an edge through vertex v; what is known of its line stays with the part that leads out of view."""
         b: cython.int = self.b[e]

@@ -11,11 +11,13 @@ cdef class Settler(Window):
     cdef Place given, best, chosen, other, trial
     cdef int[15] segments
     cdef double[15][4] lines
+    cdef bint see_site(self, Planar planar, int[::1] site, int[::1] wider) noexcept nogil
     cdef bint view(self, Planar planar, int[::1] site) noexcept nogil
     cdef int vertex_of(self, Planar planar, int name) noexcept nogil
     cdef void know(self, Planar planar, double[::1] step) noexcept nogil
     cdef bint hold(self, Place place) noexcept nogil
     cdef double settled(self, Place place, int rounds) noexcept nogil
+    cdef bint in_view(self, Place place, int v) noexcept nogil
     cdef bint search(self) noexcept nogil
     cdef void consider(self, int rounds) noexcept nogil
     cdef void merge(self) noexcept nogil
@@ -24,3 +26,5 @@ cdef class Settler(Window):
     cdef bint within(self, int e) noexcept nogil
     cdef void shrink(self, int a, int b) noexcept nogil
     cdef void meet(self, int v, int e) noexcept nogil
+    cdef void bow(self, int e, double part) noexcept nogil
+    cdef void drop(self) noexcept nogil

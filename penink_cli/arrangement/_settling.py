@@ -11,6 +11,7 @@ from cython.cimports.penink_cli.arrangement._window import Window
 COMPILED = cython.compiled
 
 _AROUND = cython.declare(cython.int, 3)  # pixels around the vertices of a place that are compared with the photo
+_BESIDE = cython.declare(cython.double, 0.5)  # pixels outside, where a vertex is still seen
 _CROWDED = cython.declare(cython.int, 14)  # edges in a window: no junction, but texture
 _BEND = cython.declare(cython.double, 8.0)  # what a radian of turning costs: a bevel turns as far as its corner
 _SHARP = cython.declare(cython.double, 1.65)  # radians that the way turns at a thorn
@@ -51,20 +52,23 @@ class Settler(Window):
         self.given, self.best = Place(), Place()
         self.chosen, self.other, self.trial = Place(), Place(), Place()
 
-    def segments_in_view(self, planar: Planar, site: cython.int[::1]) -> list:
+    def segments_in_view(self, planar: Planar, site: cython.int[::1], wider: cython.int[::1]) -> list:
         """The segments that a site is told by; none where it is not to be settled."""
-        return [self.segments[k] for k in range(self.given.edges)] if self.view(planar, site) else []
+        return [self.segments[k] for k in range(self.given.edges)] if self.see_site(planar, site, wider) else []
 
-    def improve(self, planar: Planar, step: cython.double[::1], site: cython.int[::1]) -> tuple | None:
+    def improve(
+        self, planar: Planar, step: cython.double[::1], site: cython.int[::1], wider: cython.int[::1]
+    ) -> tuple | None:
         """What is at a site, and what had better be there; None where that is the same.
 
-        step: (n,) grey step at each vertex. site: vertices that belong together.
+        step: (n,) grey step at each vertex. site: vertices that belong together; wider: those and some more,
+        if all of it can be looked at.
         """
         better: cython.bint = False
         given: Place
         best: Place
         with cython.nogil:
-            if self.view(planar, site):
+            if self.see_site(planar, site, wider):
                 self.know(planar, step)
                 better = self.search()
         if not better:
@@ -73,6 +77,13 @@ class Settler(Window):
         given.take(self.given)
         best.take(self.best)
         return given, best
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def see_site(self, planar: Planar, site: cython.int[::1], wider: cython.int[::1]) -> cython.bint:
+        """View the wider site, or at least the site."""
+        return self.view(planar, wider) or (wider.shape[0] > site.shape[0] and self.view(planar, site))
 
     @cython.cfunc
     @cython.nogil
@@ -240,8 +251,8 @@ class Settler(Window):
     def settled(self, place: Place, rounds: cython.int) -> cython.double:
         """Move the place's vertices to where the photo wants them: its description length up to a constant.
 
-        Infinite where there are too many regions or vertices, or thorns: sharp points of short edges, which
-        blur cannot show.
+        Infinite where there are too many regions or vertices, where one has left the view, or for thorns: sharp
+        points of short edges, which blur cannot show.
         """
         v: cython.int
         left_over: cython.double
@@ -257,12 +268,26 @@ class Settler(Window):
         for v in range(place.vertices):
             if place.degree[v] > 0:
                 score += _VERTEX
+            if self.number[v] >= 0 and not self.in_view(place, v):
+                return INFINITY
             if place.degree[v] == 2 and place.free[v]:
                 turn = place.turn(v, cython.address(arm))
                 if rounds > 0 and turn > _SHARP and arm < _ARM * self.near:
                     return INFINITY
                 score += _BEND * turn
         return score
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def in_view(self, place: Place, v: cython.int) -> cython.bint:
+        """Whether a vertex is among the pixels that are compared, or close by."""
+        x: cython.double = place.x[v] - self.left
+        y: cython.double = place.y[v] - self.top
+        return (
+            self.first_column - _BESIDE <= x <= self.last_column + _BESIDE
+            and self.first_row - _BESIDE <= y <= self.last_row + _BESIDE
+        )
 
     @cython.cfunc
     @cython.nogil
@@ -285,6 +310,7 @@ class Settler(Window):
             score = self.score
             self.merge()
             self.join()
+            self.drop()
             if self.score >= best_score - 1:
                 self.bend()
             unchanged = turn == 0 and self.score == score
@@ -396,19 +422,56 @@ class Settler(Window):
     @cython.nogil
     @cython.exceptval(check=False)
     def bend(self) -> cython.void:
-        """Try a vertex more in the middle of an edge of which both ends are close."""
+        """Try a vertex more in an edge: in its middle, or, where it leads out of view, close to the end in view."""
         e: cython.int
-        v: cython.int
         a: cython.int
         b: cython.int
+        length: cython.double
         for e in range(self.best.edges):
             a = self.best.a[e]
             b = self.best.b[e]
-            if not self.within(e) or self.best.apart(a, b) <= _BENT or self.best.edges == MOST_EDGES:
-                continue
-            self.other.take(self.best)
-            v = self.other.vertex(0.5 * (self.best.x[a] + self.best.x[b]), 0.5 * (self.best.y[a] + self.best.y[b]), NEW)
-            if v >= 0:
-                self.other.free[v] = True
-                self.other.split(e, v)
+            length = self.best.apart(a, b)
+            if self.best.free[a] and self.best.free[b] and length > _BENT:
+                self.bow(e, 0.5)
+            elif self.best.free[a] and length > 2 * _BENT:
+                self.bow(e, fmin(0.5, _AROUND / length))
+            elif self.best.free[b] and length > 2 * _BENT:
+                self.bow(e, 1 - fmin(0.5, _AROUND / length))
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def bow(self, e: cython.int, part: cython.double) -> cython.void:
+        """Try a vertex more at that part of an edge's way."""
+        a: cython.int = self.best.a[e]
+        b: cython.int = self.best.b[e]
+        v: cython.int
+        if self.best.edges == MOST_EDGES:
+            return
+        self.other.take(self.best)
+        v = self.other.vertex(
+            self.best.x[a] + part * (self.best.x[b] - self.best.x[a]),
+            self.best.y[a] + part * (self.best.y[b] - self.best.y[a]),
+            NEW,
+        )
+        if v >= 0:
+            self.other.free[v] = True
+            self.other.split(e, v)
+            self.consider(_GLANCE)
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def drop(self) -> cython.void:
+        """Try a vertex of two edges less, where both are in view: outside much tells against it."""
+        v: cython.int
+        for v in range(self.best.vertices):
+            if (
+                self.best.free[v]
+                and self.best.degree[v] == 2
+                and self.best.free[self.best.other(v, -1, 0)]
+                and self.best.free[self.best.other(v, -1, 1)]
+            ):
+                self.other.take(self.best)
+                self.other.pass_by(v)
                 self.consider(_GLANCE)

@@ -29,6 +29,7 @@ from penink_cli.model import Floats
 from penink_cli.reconstruction import threads as threading
 
 Ints32 = npt.NDArray[np.int32]
+Site = tuple[Ints32, Ints32]  # vertices; the same and those at the other ends of short edges
 
 _TURN = 0.6  # radians: at a vertex, or at two that are close, which makes them a corner
 _PASSES = 2
@@ -65,9 +66,9 @@ def settle_junctions(
     workers = threading.count(None)
     idle = [Settler(photo, taps, spread, near, halo, max(noise, _LEAST_NOISE) ** 2, UNIT) for _ in range(workers)]
 
-    def improve(sites: list[Ints32]) -> list[tuple[Place, Place] | None]:
+    def improve(sites: list[Site]) -> list[tuple[Place, Place] | None]:
         settler = idle.pop()
-        found = [settler.improve(planar, step, site) for site in sites]
+        found = [settler.improve(planar, step, *site) for site in sites]
         idle.append(settler)
         return found
 
@@ -75,9 +76,9 @@ def settle_junctions(
     for turn in range(_PASSES):
         sites = _sites(planar, step, near, width, height)
         if turn:
-            sites = [site for site in sites if again.intersection(site.tolist())]
+            sites = [site for site in sites if again.intersection(site[0].tolist())]
         again = set()
-        for wave in _waves(sites, [idle[0].segments_in_view(planar, site) for site in sites]):
+        for wave in _waves(sites, [idle[0].segments_in_view(planar, *site) for site in sites]):
             tasks = (partial(improve, wave[k : k + _TOGETHER]) for k in range(0, len(wave), _TOGETHER))
             for found in threading.in_order(tasks, min(workers, len(wave) // _TOGETHER)):
                 for better in found:
@@ -85,9 +86,9 @@ def settle_junctions(
                         again.update(exchange.exchange(*better))
 
 
-def _waves(sites: list[Ints32], told_by: list[list[int]]) -> list[list[Ints32]]:
+def _waves(sites: list[Site], told_by: list[list[int]]) -> list[list[Site]]:
     """The sites in groups, one group after the other: each site comes after those before it with a common segment."""
-    waves: dict[int, list[Ints32]] = defaultdict(list)
+    waves: dict[int, list[Site]] = defaultdict(list)
     last: dict[int, int] = defaultdict(int)
     for site, segments in zip(sites, told_by):
         if segments:
@@ -97,23 +98,37 @@ def _waves(sites: list[Ints32], told_by: list[list[int]]) -> list[list[Ints32]]:
     return [waves[k] for k in sorted(waves)]
 
 
-def _sites(planar: Planar, step: Floats, near: float, width: int, height: int) -> list[Ints32]:
-    """Vertices (of corners, junctions and open ends beside something) that belong together."""
+def _sites(planar: Planar, step: Floats, near: float, width: int, height: int) -> list[Site]:
+    """Corners, junctions and open ends beside something, those together that are near to one another."""
     at = np.asarray(planar.vertices) * UNIT
     ends = np.asarray(planar.ends)
     ends = ends[np.asarray(planar.live)[: len(ends)].astype(bool)]
+    inside = ((at > 0) & (at < (width, height))).all(axis=1)
     special = _special(planar, at, ends, near)
-    inside = ((at[special] > 0) & (at[special] < (width, height))).all(axis=1)
-    special = special[inside]
+    special = special[inside[special]]
+    if not len(special):
+        return []
     group = np.zeros(len(special), np.int32)
     _exchange.cluster(np.ascontiguousarray(at[special]), near, group)
     order = np.argsort(group, kind="stable")
-    firsts = np.flatnonzero(np.diff(group[order], prepend=-1))
-    sites = np.split(special[order], firsts[1:])
+    special, group = special[order], group[order]
+    firsts = np.flatnonzero(np.diff(group, prepend=-1))
     most = max(_FEW, width * height // _PIXELS_A_SITE)
-    strength = np.maximum.reduceat(step[special[order]], firsts) if len(firsts) else np.zeros(0)
+    strength = np.maximum.reduceat(step[special], firsts)
     chosen = np.sort(np.argsort(-strength, kind="stable")[:most])
-    return [sites[k] for k in chosen]
+
+    owner = np.full(len(at), -1, np.int32)
+    owner[special] = group
+    a, b = np.concatenate([ends, ends[:, ::-1]]).T
+    short = np.hypot(*(at[a] - at[b]).T) < 2 * near
+    next_to = short & (owner[a] >= 0) & (owner[a] != owner[b]) & inside[b]
+    beside: dict[int, set[int]] = defaultdict(set)
+    for k, v in zip(owner[a[next_to]].tolist(), b[next_to].tolist()):
+        beside[k].add(v)
+    cores = np.split(special, firsts[1:])
+    return [
+        (cores[k], np.concatenate([cores[k], np.array(sorted(beside[group[firsts[k]]]), np.int32)])) for k in chosen
+    ]
 
 
 def _special(planar: Planar, at: Floats, ends: Ints32, near: float) -> Ints32:
