@@ -15,13 +15,15 @@ cdef class Regions:
     cdef int top, left, rows, columns
     cdef int first_row, last_row, first_column, last_column
     cdef unsigned char[:, ::1] walls
-    cdef int[:, ::1] label
-    cdef int[::1] begin, end, start, parent, region
+    cdef int[:, ::1] columns_of
+    cdef int[::1] breaks, begin, end, start, parent, region
     cdef double[::1] total
     cdef double[:, :, ::1] across
     cdef double[:, :, ::1] design
     cdef int regions
     cdef void block(self, Place place) noexcept nogil
+    cdef void interrupt(self, int i, int j) noexcept nogil
+    cdef void hang_together(self, int i) noexcept nogil
     cdef bint part(self, Place place) noexcept nogil
     cdef void see(self) noexcept nogil
     cdef int region_at(self, double x, double y) noexcept nogil

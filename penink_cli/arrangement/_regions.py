@@ -7,7 +7,8 @@ Sides are told apart at `FINE` points a pixel along each axis.
 import cython
 import numpy as np
 from cython.cimports.libc.math import ceil
-from cython.cimports.penink_cli.arrangement._place import Place
+from cython.cimports.libc.string import memmove, memset
+from cython.cimports.penink_cli.arrangement._place import MOST_EDGES, Place
 
 COMPILED = cython.compiled
 
@@ -21,9 +22,10 @@ class Regions:
     taps, sums: (2 r + 1,) what each point gives to a pixel along one axis: the camera's blur over the pixel's width;
     the same summed up. top, left, rows, columns: the window, in pixels; first_row … last_column: those of its pixels
     that are compared with the photo, counted in the window.
-    walls: of each point, whether an edge passes on its right (1) or below (2). label: its run, which is a stretch
-    of a row between two walls. begin, end: runs of each row. start, parent, region: first column of each run, a
-    run that it is one with, its region. across: what pixels see of each region within a row of points.
+    walls: of each point, whether an edge passes below. breaks, columns_of: of each row, how many edges pass between
+    its points, and the columns after them: each begins a run. begin, end: runs of each row. start, parent, region:
+    first column of each run, a run that it is one with, its region. across: what pixels see of each region within a
+    row of points.
     design: what each pixel sees of each region, then two slopes; then room for what moves of vertices would change.
     """
 
@@ -31,9 +33,10 @@ class Regions:
         self.taps = taps
         self.sums = np.concatenate([[0.0], np.cumsum(taps)])
         self.walls = np.zeros((MOST_POINTS, MOST_POINTS), np.uint8)
-        self.label = np.zeros((MOST_POINTS, MOST_POINTS), np.int32)
+        self.breaks = np.zeros(MOST_POINTS, np.int32)
+        self.columns_of = np.zeros((MOST_POINTS, MOST_EDGES + 1), np.int32)
         self.begin, self.end = np.zeros(MOST_POINTS, np.int32), np.zeros(MOST_POINTS, np.int32)
-        self.start = np.zeros(MOST_POINTS * MOST_POINTS + 2, np.int32)
+        self.start = np.zeros(MOST_POINTS * (MOST_EDGES + 1) + 2, np.int32)
         self.parent, self.region = np.copy(self.start), np.copy(self.start)
         self.total = np.zeros(MOST_SIDE, np.float64)
         self.across = np.zeros((MOST_POINTS, MOST_REGIONS, MOST_SIDE), np.float64)
@@ -43,7 +46,7 @@ class Regions:
     @cython.nogil
     @cython.exceptval(check=False)
     def block(self, place: Place) -> cython.void:
-        """Mark the steps to the right (1) and down (2) between points that cross an edge."""
+        """Note where edges pass between points of a row, and mark where they pass below a point."""
         high: cython.int = self.rows * FINE
         wide: cython.int = self.columns * FINE
         e: cython.int
@@ -55,8 +58,8 @@ class Regions:
         y1: cython.double
         at: cython.double
         for i in range(high):
-            for j in range(wide):
-                self.walls[i, j] = 0
+            self.breaks[i] = 0
+            memset(cython.address(self.walls[i, 0]), 0, wide)
         for e in range(place.edges):
             x0 = (place.x[place.a[e]] - self.left) * FINE - 0.5
             y0 = (place.y[place.a[e]] - self.top) * FINE - 0.5
@@ -69,9 +72,8 @@ class Regions:
             i = cython.cast(cython.int, ceil(max(0.0, y0)))
             while i < high and i < y1:
                 at = x0 + (i - y0) * ((x1 - x0) / (y1 - y0))
-                if 0 < at < wide:
-                    j = cython.cast(cython.int, ceil(at)) - 1
-                    self.walls[i, j] |= 1
+                if 0 < at <= wide - 1:
+                    self.interrupt(i, cython.cast(cython.int, ceil(at)))
                 i += 1
             if x0 > x1:
                 x0, y0, x1, y1 = x1, y1, x0, y0
@@ -80,8 +82,26 @@ class Regions:
                 at = y0 + (j - x0) * ((y1 - y0) / (x1 - x0))
                 if 0 < at < high:
                     i = cython.cast(cython.int, ceil(at)) - 1
-                    self.walls[i, j] |= 2
+                    self.walls[i, j] = 1
                 j += 1
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def interrupt(self, i: cython.int, j: cython.int) -> cython.void:
+        """Let a run of row i begin with column j."""
+        k: cython.int = self.breaks[i]
+        while k > 0 and self.columns_of[i, k - 1] > j:
+            k -= 1
+        if (k > 0 and self.columns_of[i, k - 1] == j) or self.breaks[i] == MOST_EDGES:
+            return
+        memmove(
+            cython.address(self.columns_of[i, k]) + 1,
+            cython.address(self.columns_of[i, k]),
+            (self.breaks[i] - k) * cython.sizeof(cython.int),
+        )
+        self.columns_of[i, k] = j
+        self.breaks[i] += 1
 
     @cython.cfunc
     @cython.nogil
@@ -89,40 +109,23 @@ class Regions:
     def part(self, place: Place) -> cython.bint:
         """Number the regions that edges part; False where there are too many.
 
-        Points between two walls of a row are a run; runs below one another without a wall between are one region.
+        Points of a row between two edges are a run; runs below one another without an edge between are one region.
         """
-        high: cython.int = self.rows * FINE
-        wide: cython.int = self.columns * FINE
         i: cython.int
-        j: cython.int
         a: cython.int
         b: cython.int
         run: cython.int = 0
-        above: cython.int
-        for i in range(high):
+        self.block(place)
+        for i in range(self.rows * FINE):
             self.begin[i] = run
-            self.start[run] = 0
-            self.parent[run] = run
-            above = -1
-            for j in range(wide):
-                if j and self.walls[i, j - 1] & 1:
-                    run += 1
-                    self.start[run] = j
-                    self.parent[run] = run
-                    above = -1
-                self.label[i, j] = run
-                if i and self.walls[i - 1, j] & 2 == 0 and self.label[i - 1, j] != above:
-                    above = self.label[i - 1, j]
-                    a = above
-                    while self.parent[a] != a:
-                        a = self.parent[a]
-                    b = run
-                    while self.parent[b] != b:
-                        b = self.parent[b]
-                    self.parent[max(a, b)] = min(a, b)
-            run += 1
-            self.start[run] = wide  # of the row above: overwritten by the next one's first run
+            for a in range(self.breaks[i] + 1):
+                self.start[run] = self.columns_of[i, a - 1] if a > 0 else 0
+                self.parent[run] = run
+                run += 1
+            self.start[run] = self.columns * FINE  # overwritten by the next row's first run
             self.end[i] = run
+            if i > 0:
+                self.hang_together(i)
         self.regions = 0
         for a in range(run):  # a run's parent comes before it
             if self.parent[a] == a:
@@ -133,6 +136,36 @@ class Regions:
             else:
                 self.region[a] = self.region[self.parent[a]]
         return True
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def hang_together(self, i: cython.int) -> cython.void:
+        """Make runs of row i one with those above them where no edge is between."""
+        one: cython.int = self.begin[i - 1]
+        other: cython.int = self.begin[i]
+        j: cython.int
+        a: cython.int
+        b: cython.int
+        one_end: cython.int
+        other_end: cython.int
+        while one < self.end[i - 1] and other < self.end[i]:
+            one_end = self.start[one + 1] if one + 1 < self.end[i - 1] else self.columns * FINE
+            other_end = self.start[other + 1]
+            for j in range(max(self.start[one], self.start[other]), min(one_end, other_end)):
+                if not self.walls[i - 1, j]:
+                    a = one
+                    while self.parent[a] != a:
+                        a = self.parent[a]
+                    b = other
+                    while self.parent[b] != b:
+                        b = self.parent[b]
+                    self.parent[max(a, b)] = min(a, b)
+                    break
+            if one_end <= other_end:
+                one += 1
+            if other_end <= one_end:
+                other += 1
 
     @cython.cfunc
     @cython.nogil
@@ -193,4 +226,7 @@ class Regions:
         """The region at a place in the window (pixels)."""
         i: cython.int = min(self.rows * FINE - 1, max(0, cython.cast(cython.int, y * FINE)))
         j: cython.int = min(self.columns * FINE - 1, max(0, cython.cast(cython.int, x * FINE)))
-        return self.region[self.label[i, j]]
+        run: cython.int = self.begin[i]
+        while run + 1 < self.end[i] and self.start[run + 1] <= j:
+            run += 1
+        return self.region[run]

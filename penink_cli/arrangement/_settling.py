@@ -2,7 +2,7 @@
 """Compiled: one corner or junction after the other changed until it explains the photo best. See junctions.py."""
 
 import cython
-from cython.cimports.libc.math import INFINITY, ceil, floor, fmax, fmin, log
+from cython.cimports.libc.math import INFINITY, ceil, exp, floor, fmax, fmin, log
 from cython.cimports.penink_cli.arrangement._place import MOST_EDGES, NEW, Place
 from cython.cimports.penink_cli.arrangement._planar import Planar
 from cython.cimports.penink_cli.arrangement._regions import MOST_MOVED, MOST_SIDE
@@ -11,6 +11,7 @@ from cython.cimports.penink_cli.arrangement._window import Window
 COMPILED = cython.compiled
 
 _AROUND = cython.declare(cython.int, 3)  # pixels around the vertices of a place that are compared with the photo
+_MARGIN = cython.declare(cython.double, 5.0)  # by which a change may look worse at first glance
 _BESIDE = cython.declare(cython.double, 0.5)  # pixels outside, where a vertex is still seen
 _CROWDED = cython.declare(cython.int, 14)  # edges in a window: no junction, but texture
 _BEND = cython.declare(cython.double, 8.0)  # what a radian of turning costs: a bevel turns as far as its corner
@@ -248,12 +249,13 @@ class Settler(Window):
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)
-    def settled(self, place: Place, rounds: cython.int) -> cython.double:
+    def settled(self, place: Place, rounds: cython.int, wanted: cython.double) -> cython.double:
         """Move the place's vertices to where the photo wants them: its description length up to a constant.
 
         Infinite where there are too many regions or vertices, where one has left the view, or for thorns: sharp
-        points of short edges, which blur cannot show.
+        points of short edges, which blur cannot show. The search for it is given up where it will not be as wanted.
         """
+        vertices: cython.int = 0
         v: cython.int
         left_over: cython.double
         turn: cython.double
@@ -261,13 +263,16 @@ class Settler(Window):
         score: cython.double
         if not self.hold(place):
             return INFINITY
-        left_over = self.settle(place, self.trial, rounds)
+        for v in range(place.vertices):
+            vertices += place.degree[v] > 0
+        score = _VERTEX * vertices
+        left_over = self.settle(
+            place, self.trial, rounds, self.pixels * (exp((wanted - score) / self.pixels) - self.floor)
+        )
         if left_over < 0:
             return INFINITY
-        score = self.pixels * log(left_over / self.pixels + self.floor)
+        score += self.pixels * log(left_over / self.pixels + self.floor)
         for v in range(place.vertices):
-            if place.degree[v] > 0:
-                score += _VERTEX
             if self.number[v] >= 0 and not self.in_view(place, v):
                 return INFINITY
             if place.degree[v] == 2 and place.free[v]:
@@ -299,15 +304,17 @@ class Settler(Window):
         unchanged: cython.bint
         turn: cython.int
         self.best.take(self.given)
-        best_score = self.settled(self.best, 0)
+        best_score = self.settled(self.best, 0, INFINITY)
         if best_score == INFINITY:
             return False
         for turn in range(_STEPS):
             self.score = INFINITY
+            self.wanted = INFINITY
             if turn == 0:
                 self.other.take(self.best)
                 self.consider(_ROUNDS)
             score = self.score
+            self.wanted = best_score + _MARGIN
             self.merge()
             self.join()
             self.drop()
@@ -318,7 +325,7 @@ class Settler(Window):
                 return turn > 0
             if not unchanged:
                 self.other.take(self.chosen)
-                score = self.settled(self.other, _ROUNDS)
+                score = self.settled(self.other, _ROUNDS, INFINITY)
                 if score < INFINITY:
                     self.score = score
                     self.chosen.take(self.other)
@@ -333,7 +340,7 @@ class Settler(Window):
     @cython.exceptval(check=False)
     def consider(self, rounds: cython.int) -> cython.void:
         """Settle `other`, and choose it if it is better than what is chosen."""
-        score: cython.double = self.settled(self.other, rounds)
+        score: cython.double = self.settled(self.other, rounds, fmin(self.score, self.wanted))
         if score < self.score:
             self.score = score
             self.chosen.take(self.other)

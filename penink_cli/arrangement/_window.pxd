@@ -9,7 +9,7 @@ cdef class Window(Regions):
     cdef int moved
     cdef int[MOST_VERTICES] number
     cdef double[:, ::1] rest, normal, held, way
-    cdef double[::1] right, grey
+    cdef double[::1] right, grey, slope
     cdef bint enumerate(self, Place place) noexcept nogil
     cdef int open(self, int top, int left, int bottom, int right, int halo) noexcept nogil
     cdef void gather(self, int unknown) noexcept nogil
@@ -19,4 +19,4 @@ cdef class Window(Regions):
     cdef void yields(self, Place place, int base) noexcept nogil
     cdef double bell(self, double d) noexcept nogil
     cdef double held_cost(self, Place place) noexcept nogil
-    cdef double settle(self, Place place, Place trial, int rounds) noexcept nogil
+    cdef double settle(self, Place place, Place trial, int rounds, double wanted) noexcept nogil

@@ -6,13 +6,14 @@ See junctions.py.
 
 import cython
 import numpy as np
-from cython.cimports.libc.math import fabs, sqrt
+from cython.cimports.libc.math import INFINITY, fabs, sqrt
 from cython.cimports.penink_cli.arrangement._place import Place
 from cython.cimports.penink_cli.arrangement._regions import MOST_MOVED, MOST_SIDE, MOST_UNKNOWN, Regions
 
 COMPILED = cython.compiled
 
 _RIDGE = cython.declare(cython.double, 1e-4)  # holds the grey of a region that no pixel tells of
+_OPTIMISM = cython.declare(cython.double, 2.0)  # times what a step is expected to give, all steps may give at most
 _LONGEST = cython.declare(cython.double, 0.8)  # pixels that a vertex goes in one step
 
 
@@ -25,7 +26,8 @@ class Window(Regions):
     number: of each vertex of the place among those that are moved, -1 for the others; moved: how many those are.
     held: (MOST_MOVED, 6) what is known of each otherwise, as A (xx, xy, yy), b (x, y) and c of a cost
     xᵀ A x − 2 bᵀ x + c in grey², x counted from the window's corner.
-    rest: what the greys do not explain. normal, right: the equations for greys and moves. way: the moves.
+    rest: what the greys do not explain. normal, right: the equations for greys and moves. slope: what `right` was
+    of the moves. way: the moves.
     """
 
     def __init__(self, photo: cython.float[:, ::1], taps: cython.double[::1], spread: cython.double):
@@ -36,6 +38,7 @@ class Window(Regions):
         self.right = np.zeros(MOST_UNKNOWN, np.float64)
         self.grey = np.zeros(MOST_UNKNOWN, np.float64)
         self.held = np.zeros((MOST_MOVED, 6), np.float64)
+        self.slope = np.zeros(2 * MOST_MOVED, np.float64)
         self.way = np.zeros((MOST_MOVED, 2), np.float64)
 
     def fitted(self, place: Place, window: tuple, halo: cython.int, rounds: cython.int, held: tuple = ()) -> float:
@@ -46,7 +49,7 @@ class Window(Regions):
         for k, known in enumerate(held):
             for i in range(6):
                 self.held[k, i] = known[i]
-        return self.settle(place, Place(), rounds) if self.enumerate(place) else -1.0
+        return self.settle(place, Place(), rounds, INFINITY) if self.enumerate(place) else -1.0
 
     @cython.cfunc
     @cython.nogil
@@ -141,7 +144,6 @@ class Window(Regions):
         unknown: cython.int
         total: cython.double = 0.0
         v: cython.double
-        self.block(place)
         if not self.part(place):
             return -1.0
         self.see()
@@ -282,11 +284,11 @@ class Window(Regions):
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)
-    def settle(self, place: Place, trial: Place, rounds: cython.int) -> cython.double:
+    def settle(self, place: Place, trial: Place, rounds: cython.int, wanted: cython.double) -> cython.double:
         """Move vertices to where the rendered window is most like the photo (Gauss and Newton's steps).
 
         Those of `number` move; `trial` is room to work in. Returns the sum of squares that is left unexplained and
-        what `held` says; negative where there are too many regions.
+        what `held` says; negative where there are too many regions. Gives up where that will not be as low as wanted.
         """
         v: cython.int
         k: cython.int
@@ -318,7 +320,14 @@ class Window(Regions):
                     self.normal[at + 1, at + 1] += self.held[k, 2]
                     self.right[at] += self.held[k, 3] - self.held[k, 0] * x - self.held[k, 1] * y
                     self.right[at + 1] += self.held[k, 4] - self.held[k, 1] * x - self.held[k, 2] * y
+            for k in range(2 * self.moved):
+                self.slope[k] = self.right[base + k]
             self.solve(base + 2 * self.moved)
+            far = 0.0  # by how much it would become less, if it were linear
+            for k in range(2 * self.moved):
+                far += self.slope[k] * self.right[base + k]
+            if best - _OPTIMISM * far > wanted:
+                break
             for k in range(self.moved):
                 far = sqrt(self.right[base + 2 * k] ** 2 + self.right[base + 2 * k + 1] ** 2)
                 part = min(1.0, _LONGEST / max(far, 1e-9))
