@@ -25,9 +25,10 @@ cdef class Place:
     cdef double from_place(self, int v, double x, double y) noexcept nogil
     cdef double foot(self, int v, int e) noexcept nogil
     cdef int other(self, int v, int but, int skip) noexcept nogil
+    cdef bint linked(self, int u, int v) noexcept nogil
     cdef bint closed(self) noexcept nogil
     cdef double turn(self, int v, double* arm) noexcept nogil
     cdef void unite(self, int a, int b, double x, double y) noexcept nogil
     cdef void split(self, int e, int v) noexcept nogil
     cdef bint meeting(self, int a, int b, double* x, double* y) noexcept nogil
-    cdef void pass_by(self, int v) noexcept nogil
+    cdef int pass_by(self, int v) noexcept nogil

@@ -137,6 +137,17 @@ class Place:
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)
+    def linked(self, u: cython.int, v: cython.int) -> cython.bint:
+        """Whether there is an edge from u to v."""
+        e: cython.int
+        for e in range(self.edges):
+            if (self.a[e] == u and self.b[e] == v) or (self.a[e] == v and self.b[e] == u):
+                return True
+        return False
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
     def closed(self) -> cython.bint:
         """Whether no edge leads out of the free vertices: a speck."""
         e: cython.int
@@ -200,12 +211,13 @@ class Place:
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)
-    def pass_by(self, v: cython.int) -> cython.void:
-        """Link the two neighbours of v, which is gone then."""
+    def pass_by(self, v: cython.int) -> cython.int:
+        """Link the two neighbours of v, which is gone then; one of them."""
         u: cython.int = self.other(v, -1, 0)
         x: cython.double = self.x[u]
         y: cython.double = self.y[u]
         self.unite(u, v, x, y)
+        return u
 
     @cython.cfunc
     @cython.nogil

@@ -6,7 +6,7 @@ from penink_cli.arrangement._window cimport Window
 
 @cython.final
 cdef class Settler(Window):
-    cdef double near, floor, unit, score, wanted
+    cdef double near, floor, unit, score, wanted, left_over
     cdef int halo, pixels
     cdef Place given, best, chosen, other, trial
     cdef int[15] segments
@@ -15,11 +15,11 @@ cdef class Settler(Window):
     cdef bint view(self, Planar planar, int[::1] site) noexcept nogil
     cdef int vertex_of(self, Planar planar, int name) noexcept nogil
     cdef void know(self, Planar planar, double[::1] step) noexcept nogil
-    cdef bint hold(self, Place place) noexcept nogil
-    cdef double settled(self, Place place, int rounds, double wanted) noexcept nogil
+    cdef bint hold(self, Place place, int centre) noexcept nogil
+    cdef double settled(self, Place place, int rounds, int centre, double wanted) noexcept nogil
     cdef bint in_view(self, Place place, int v) noexcept nogil
     cdef bint search(self) noexcept nogil
-    cdef void consider(self, int rounds) noexcept nogil
+    cdef void consider(self, int rounds, int centre) noexcept nogil
     cdef void merge(self) noexcept nogil
     cdef void join(self) noexcept nogil
     cdef void bend(self) noexcept nogil

@@ -12,6 +12,7 @@ COMPILED = cython.compiled
 
 _AROUND = cython.declare(cython.int, 3)  # pixels around the vertices of a place that are compared with the photo
 _MARGIN = cython.declare(cython.double, 5.0)  # by which a change may look worse at first glance
+_OPTIMISM = cython.declare(cython.double, 2.0)  # times what a bend promises it may give at most
 _BESIDE = cython.declare(cython.double, 0.5)  # pixels outside, where a vertex is still seen
 _CROWDED = cython.declare(cython.int, 14)  # edges in a window: no junction, but texture
 _BEND = cython.declare(cython.double, 8.0)  # what a radian of turning costs: a bevel turns as far as its corner
@@ -205,8 +206,8 @@ class Settler(Window):
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)
-    def hold(self, place: Place) -> cython.bint:
-        """Number the vertices to be moved, and hold each where it is and on its lines; False for too many."""
+    def hold(self, place: Place, centre: cython.int) -> cython.bint:
+        """Number the vertices to be moved, as `enumerate`, and hold each where it is and on its lines."""
         v: cython.int
         k: cython.int
         e: cython.int
@@ -216,7 +217,7 @@ class Settler(Window):
         w: cython.double = _LOOSE * self.floor
         line: cython.p_double
         held: cython.p_double
-        if not self.enumerate(place):
+        if not self.enumerate(place, centre):
             return False
         for v in range(place.vertices):
             k = self.number[v]
@@ -249,7 +250,7 @@ class Settler(Window):
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)
-    def settled(self, place: Place, rounds: cython.int, wanted: cython.double) -> cython.double:
+    def settled(self, place: Place, rounds: cython.int, centre: cython.int, wanted: cython.double) -> cython.double:
         """Move the place's vertices to where the photo wants them: its description length up to a constant.
 
         Infinite where there are too many regions or vertices, where one has left the view, or for thorns: sharp
@@ -261,7 +262,7 @@ class Settler(Window):
         turn: cython.double
         arm: cython.double = 0.0
         score: cython.double
-        if not self.hold(place):
+        if not self.hold(place, centre):
             return INFINITY
         for v in range(place.vertices):
             vertices += place.degree[v] > 0
@@ -304,7 +305,7 @@ class Settler(Window):
         unchanged: cython.bint
         turn: cython.int
         self.best.take(self.given)
-        best_score = self.settled(self.best, 0, INFINITY)
+        best_score = self.settled(self.best, 0, -1, INFINITY)
         if best_score == INFINITY:
             return False
         for turn in range(_STEPS):
@@ -312,7 +313,7 @@ class Settler(Window):
             self.wanted = INFINITY
             if turn == 0:
                 self.other.take(self.best)
-                self.consider(_ROUNDS)
+                self.consider(_ROUNDS, -1)
             score = self.score
             self.wanted = best_score + _MARGIN
             self.merge()
@@ -325,7 +326,7 @@ class Settler(Window):
                 return turn > 0
             if not unchanged:
                 self.other.take(self.chosen)
-                score = self.settled(self.other, _ROUNDS, INFINITY)
+                score = self.settled(self.other, _ROUNDS, -1, INFINITY)
                 if score < INFINITY:
                     self.score = score
                     self.chosen.take(self.other)
@@ -338,9 +339,9 @@ class Settler(Window):
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)
-    def consider(self, rounds: cython.int) -> cython.void:
-        """Settle `other`, and choose it if it is better than what is chosen."""
-        score: cython.double = self.settled(self.other, rounds, fmin(self.score, self.wanted))
+    def consider(self, rounds: cython.int, centre: cython.int) -> cython.void:
+        """Settle `other`, or only around a vertex, and choose it if it is better than what is chosen."""
+        score: cython.double = self.settled(self.other, rounds, centre, fmin(self.score, self.wanted))
         if score < self.score:
             self.score = score
             self.chosen.take(self.other)
@@ -378,7 +379,7 @@ class Settler(Window):
         ):
             self.other.take(self.best)
             self.other.unite(a, b, x, y)
-            self.consider(_GLANCE)
+            self.consider(_GLANCE, a)
         x = 0.5 * (self.best.x[a] + self.best.x[b])
         y = 0.5 * (self.best.y[a] + self.best.y[b])
         if busier != 0:
@@ -386,7 +387,7 @@ class Settler(Window):
             y = self.best.y[a if busier > 0 else b]
         self.other.take(self.best)
         self.other.unite(a, b, x, y)
-        self.consider(_GLANCE)
+        self.consider(_GLANCE, a)
 
     @cython.cfunc
     @cython.nogil
@@ -417,13 +418,13 @@ class Settler(Window):
         if self.best.free[u] and self.best.apart(u, v) < self.near:
             self.other.take(self.best)
             self.other.unite(u, v, self.best.x[u], self.best.y[u])
-            self.consider(_GLANCE)
+            self.consider(_GLANCE, u)
         if 0 < part < 1 and self.best.edges < MOST_EDGES:
             self.other.take(self.best)
             self.other.x[v] = x
             self.other.y[v] = y
             self.other.split(e, v)
-            self.consider(_GLANCE)
+            self.consider(_GLANCE, v)
 
     @cython.cfunc
     @cython.nogil
@@ -434,6 +435,7 @@ class Settler(Window):
         a: cython.int
         b: cython.int
         length: cython.double
+        self.left_over = self.look(self.best)
         for e in range(self.best.edges):
             a = self.best.a[e]
             b = self.best.b[e]
@@ -453,7 +455,12 @@ class Settler(Window):
         a: cython.int = self.best.a[e]
         b: cython.int = self.best.b[e]
         v: cython.int
+        gain: cython.double
+        rest: cython.double = self.left_over / self.pixels + self.floor
         if self.best.edges == MOST_EDGES:
+            return
+        gain = fmin(self.left_over, _OPTIMISM * self.promise(self.best, e, part)) / self.pixels
+        if self.pixels * log(rest / (rest - gain)) < _VERTEX:
             return
         self.other.take(self.best)
         v = self.other.vertex(
@@ -464,13 +471,15 @@ class Settler(Window):
         if v >= 0:
             self.other.free[v] = True
             self.other.split(e, v)
-            self.consider(_GLANCE)
+            self.consider(_GLANCE, v)
+            self.look(self.best)
 
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)
     def drop(self) -> cython.void:
         """Try a vertex of two edges less, where both are in view: outside much tells against it."""
+        u: cython.int
         v: cython.int
         for v in range(self.best.vertices):
             if (
@@ -480,5 +489,5 @@ class Settler(Window):
                 and self.best.free[self.best.other(v, -1, 1)]
             ):
                 self.other.take(self.best)
-                self.other.pass_by(v)
-                self.consider(_GLANCE)
+                u = self.other.pass_by(v)
+                self.consider(_GLANCE, u)

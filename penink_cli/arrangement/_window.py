@@ -27,7 +27,7 @@ class Window(Regions):
     held: (MOST_MOVED, 6) what is known of each otherwise, as A (xx, xy, yy), b (x, y) and c of a cost
     xᵀ A x − 2 bᵀ x + c in grey², x counted from the window's corner.
     rest: what the greys do not explain. normal, right: the equations for greys and moves. slope: what `right` was
-    of the moves. way: the moves.
+    of the moves. way: the moves. change: what a bend would add to the picture.
     """
 
     def __init__(self, photo: cython.float[:, ::1], taps: cython.double[::1], spread: cython.double):
@@ -38,6 +38,7 @@ class Window(Regions):
         self.right = np.zeros(MOST_UNKNOWN, np.float64)
         self.grey = np.zeros(MOST_UNKNOWN, np.float64)
         self.held = np.zeros((MOST_MOVED, 6), np.float64)
+        self.change = np.zeros((MOST_SIDE, MOST_SIDE), np.float64)
         self.slope = np.zeros(2 * MOST_MOVED, np.float64)
         self.way = np.zeros((MOST_MOVED, 2), np.float64)
 
@@ -49,18 +50,21 @@ class Window(Regions):
         for k, known in enumerate(held):
             for i in range(6):
                 self.held[k, i] = known[i]
-        return self.settle(place, Place(), rounds, INFINITY) if self.enumerate(place) else -1.0
+        return self.settle(place, Place(), rounds, INFINITY) if self.enumerate(place, -1) else -1.0
 
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)
-    def enumerate(self, place: Place) -> cython.bint:
-        """Number the vertices that are moved: those that are free and have an edge. False for too many."""
+    def enumerate(self, place: Place, centre: cython.int) -> cython.bint:
+        """Number the vertices that are moved: those that are free and have an edge. False for too many.
+
+        centre: if not negative, only this vertex and its neighbours.
+        """
         v: cython.int
         self.moved = 0
         for v in range(place.vertices):
             self.number[v] = -1
-            if place.free[v] and place.degree[v] > 0:
+            if place.free[v] and place.degree[v] > 0 and (centre < 0 or v == centre or place.linked(v, centre)):
                 if self.moved == MOST_MOVED:
                     return False
                 self.number[v] = self.moved
@@ -250,6 +254,59 @@ class Window(Regions):
                             self.design[i, j, base + 2 * b + 1] += v * over[j] * t * (dx / length)
 
     @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def promise(self, place: Place, e: cython.int, part: cython.double) -> cython.double:
+        """How much a bend at that part of an edge's way would explain, if what it changes were linear in its size.
+
+        `rest` must be what the place leaves over.
+        """
+        i: cython.int
+        j: cython.int
+        k: cython.int
+        x0: cython.double = place.x[place.a[e]] - self.left
+        y0: cython.double = place.y[place.a[e]] - self.top
+        dx: cython.double = place.x[place.b[e]] - self.left - x0
+        dy: cython.double = place.y[place.b[e]] - self.top - y0
+        length: cython.double = sqrt(dx * dx + dy * dy)
+        n: cython.int = 1 + cython.cast(cython.int, 2 * length)
+        t: cython.double
+        x: cython.double
+        y: cython.double
+        v: cython.double
+        weight: cython.double
+        product: cython.double = 0.0
+        square: cython.double = 0.0
+        reach: cython.int = 1 + cython.cast(cython.int, 3.465 * self.spread)
+        for i in range(self.first_row, self.last_row):
+            for j in range(self.first_column, self.last_column):
+                self.change[i, j] = 0.0
+        for k in range(n):
+            t = (k + 0.5) / n
+            x = x0 + t * dx
+            y = y0 + t * dy
+            if x < -3 or y < -3 or x > self.columns + 3 or y > self.rows + 3:
+                continue
+            weight = self.grey_at(x + 0.4 * dy / length, y - 0.4 * dx / length)
+            weight -= self.grey_at(x - 0.4 * dy / length, y + 0.4 * dx / length)
+            weight *= t / part if t < part else (1 - t) / (1 - part)
+            for i in range(
+                max(self.first_row, cython.cast(cython.int, y) - reach),
+                min(self.last_row, cython.cast(cython.int, y) + reach + 1),
+            ):
+                v = weight * self.bell(fabs(i + 0.5 - y))
+                for j in range(
+                    max(self.first_column, cython.cast(cython.int, x) - reach),
+                    min(self.last_column, cython.cast(cython.int, x) + reach + 1),
+                ):
+                    self.change[i, j] += v * self.bell(fabs(j + 0.5 - x))
+        for i in range(self.first_row, self.last_row):
+            for j in range(self.first_column, self.last_column):
+                product += self.change[i, j] * self.rest[i, j]
+                square += self.change[i, j] * self.change[i, j]
+        return product * product / square if square > 0 else 0.0
+
+    @cython.cfunc
     @cython.inline
     @cython.nogil
     @cython.exceptval(check=False)
@@ -297,10 +354,10 @@ class Window(Regions):
         at: cython.int
         x: cython.double
         y: cython.double
-        found: cython.double
         far: cython.double
         part: cython.double
         best: cython.double = self.look(place)
+        found: cython.double = best
         if best < 0:
             return best
         best += self.held_cost(place)
