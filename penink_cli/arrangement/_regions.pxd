@@ -8,13 +8,14 @@ cdef enum:
     MOST_POINTS = 78
     MOST_REGIONS = 12
     MOST_MOVED = 8
-    MOST_UNKNOWN = 30
+    MOST_UNKNOWN = 30  # regions, two slopes, two ways for each vertex
+    EQUATIONS = 900  # that squared
 
 cdef class Regions:
     cdef double[::1] taps, sums
     cdef int top, left, rows, columns
     cdef int first_row, last_row, first_column, last_column
-    cdef unsigned char[:, ::1] walls
+    cdef unsigned char[:, ::1] walls, present
     cdef int[:, ::1] columns_of
     cdef int[::1] breaks, begin, end, start, parent, region
     cdef double[::1] total

@@ -24,8 +24,8 @@ class Regions:
     that are compared with the photo, counted in the window.
     walls: of each point, whether an edge passes below. breaks, columns_of: of each row, how many edges pass between
     its points, and the columns after them: each begins a run. begin, end: runs of each row. start, parent, region:
-    first column of each run, a run that it is one with, its region. across: what pixels see of each region within a
-    row of points.
+    first column of each run, a run that it is one with, its region. present: regions of each row; across: what pixels
+    see of them in that row.
     design: what each pixel sees of each region, then two slopes; then room for what moves of vertices would change.
     """
 
@@ -39,6 +39,7 @@ class Regions:
         self.start = np.zeros(MOST_POINTS * (MOST_EDGES + 1) + 2, np.int32)
         self.parent, self.region = np.copy(self.start), np.copy(self.start)
         self.total = np.zeros(MOST_SIDE, np.float64)
+        self.present = np.zeros((MOST_POINTS, MOST_REGIONS), np.uint8)
         self.across = np.zeros((MOST_POINTS, MOST_REGIONS, MOST_SIDE), np.float64)
         self.design = np.zeros((MOST_SIDE, MOST_SIDE, MOST_UNKNOWN), np.float64)
 
@@ -189,13 +190,15 @@ class Regions:
         row: cython.p_double
         for i in range(high):
             for k in range(regions):
-                for j in range(self.first_column, self.last_column):
-                    self.across[i, k, j] = 0.0
+                self.present[i, k] = 0
             for run in range(self.begin[i], self.end[i]):
                 # The row goes on beyond the window as it ends.
                 first = self.start[run] if run > self.begin[i] else -MOST_POINTS
                 last = self.start[run + 1] if run + 1 < self.end[i] else wide + MOST_POINTS
                 k = self.region[run]
+                if not self.present[i, k]:
+                    self.present[i, k] = 1
+                    memset(cython.address(self.across[i, k, 0]), 0, self.columns * cython.sizeof(cython.double))
                 for j in range(
                     max(self.first_column, (first - reach) // FINE - 1 if first > 0 else 0),
                     min(self.last_column, (last + reach) // FINE + 2),
@@ -209,7 +212,10 @@ class Regions:
                 for j in range(self.first_column, self.last_column):
                     total[j] = 0.0
                 for d in range(-reach, reach + 1):
-                    row = cython.address(self.across[min(high - 1, max(0, FINE * i + FINE // 2 + d)), k, 0])
+                    at = min(high - 1, max(0, FINE * i + FINE // 2 + d))
+                    if not self.present[at, k]:
+                        continue
+                    row = cython.address(self.across[at, k, 0])
                     weight = self.taps[d + reach]
                     for j in range(self.first_column, self.last_column):
                         total[j] += weight * row[j]

