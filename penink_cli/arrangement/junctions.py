@@ -14,6 +14,7 @@ from __future__ import annotations
 import math
 from collections import defaultdict
 from functools import partial
+from itertools import chain
 
 import numpy as np
 import numpy.typing as npt
@@ -72,7 +73,7 @@ def settle_junctions(
         idle.append(settler)
         return found
 
-    again: set[int] = set()
+    again: set[int] = set()  # vertices moved by a site that is not theirs
     for turn in range(_PASSES):
         sites = _sites(planar, step, near, width, height)
         if turn:
@@ -80,10 +81,10 @@ def settle_junctions(
         again = set()
         for wave in _waves(sites, [idle[0].segments_in_view(planar, *site) for site in sites]):
             tasks = (partial(improve, wave[k : k + _TOGETHER]) for k in range(0, len(wave), _TOGETHER))
-            for found in threading.in_order(tasks, min(workers, len(wave) // _TOGETHER)):
-                for better in found:
-                    if better is not None:
-                        again.update(exchange.exchange(*better))
+            found = chain.from_iterable(threading.in_order(tasks, min(workers, len(wave) // _TOGETHER)))
+            for site, better in zip(wave, found):
+                if better is not None:
+                    again.update(set(exchange.exchange(*better)).difference(site[0].tolist()))
 
 
 def _waves(sites: list[Site], told_by: list[list[int]]) -> list[list[Site]]:
