@@ -148,6 +148,30 @@ class Place:
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)
+    def side(self, u: cython.int, v: cython.int, w: cython.int) -> cython.double:
+        """Positive where w is to the right of the way from u to v on the screen."""
+        return (self.x[v] - self.x[u]) * (self.y[w] - self.y[u]) - (self.y[v] - self.y[u]) * (self.x[w] - self.x[u])
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def crosses(self, u: cython.int, v: cython.int) -> cython.bint:
+        """Whether the straight way from u to v crosses an edge."""
+        e: cython.int
+        a: cython.int
+        b: cython.int
+        for e in range(self.edges):
+            a = self.a[e]
+            b = self.b[e]
+            if a == u or a == v or b == u or b == v:
+                continue
+            if self.side(u, v, a) * self.side(u, v, b) <= 0 and self.side(a, b, u) * self.side(a, b, v) <= 0:
+                return True
+        return False
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
     def closed(self) -> cython.bint:
         """Whether no edge leads out of the free vertices: a speck."""
         e: cython.int

@@ -11,8 +11,8 @@ cdef class Settler(Window):
     cdef Place given, best, chosen, other, trial
     cdef int[15] segments
     cdef double[15][4] lines
-    cdef bint see_site(self, Planar planar, int[::1] site, int[::1] wider) noexcept nogil
-    cdef bint view(self, Planar planar, int[::1] site) noexcept nogil
+    cdef bint see_site(self, Planar planar, int[::1] site, int[::1] wider, int around) noexcept nogil
+    cdef bint view(self, Planar planar, int[::1] site, int around) noexcept nogil
     cdef int vertex_of(self, Planar planar, int name) noexcept nogil
     cdef void know(self, Planar planar, double[::1] step) noexcept nogil
     cdef bint hold(self, Place place, int centre) noexcept nogil
@@ -28,3 +28,5 @@ cdef class Settler(Window):
     cdef void meet(self, int v, int e) noexcept nogil
     cdef void bow(self, int e, double part) noexcept nogil
     cdef void drop(self) noexcept nogil
+    cdef void link(self) noexcept nogil
+    cdef double contrast(self, int u, int v) noexcept nogil

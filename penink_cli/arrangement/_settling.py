@@ -13,6 +13,8 @@ COMPILED = cython.compiled
 _AROUND = cython.declare(cython.int, 3)  # pixels around the vertices of a place that are compared with the photo
 _MARGIN = cython.declare(cython.double, 5.0)  # by which a change may look worse at first glance
 _OPTIMISM = cython.declare(cython.double, 2.0)  # times what a bend promises it may give at most
+_TELLS = cython.declare(cython.double, 6.0)  # variances that the photo differs by beside a missing edge
+_REGION = cython.declare(cython.double, 3.0)  # the logarithm of the pixels that its grey is told by
 _BESIDE = cython.declare(cython.double, 0.5)  # pixels outside, where a vertex is still seen
 _CROWDED = cython.declare(cython.int, 14)  # edges in a window: no junction, but texture
 _BEND = cython.declare(cython.double, 8.0)  # what a radian of turning costs: a bevel turns as far as its corner
@@ -54,23 +56,30 @@ class Settler(Window):
         self.given, self.best = Place(), Place()
         self.chosen, self.other, self.trial = Place(), Place(), Place()
 
-    def segments_in_view(self, planar: Planar, site: cython.int[::1], wider: cython.int[::1]) -> list:
+    def segments_in_view(
+        self, planar: Planar, site: cython.int[::1], wider: cython.int[::1], around: cython.int
+    ) -> list:
         """The segments that a site is told by; none where it is not to be settled."""
-        return [self.segments[k] for k in range(self.given.edges)] if self.see_site(planar, site, wider) else []
+        return [self.segments[k] for k in range(self.given.edges)] if self.see_site(planar, site, wider, around) else []
 
     def improve(
-        self, planar: Planar, step: cython.double[::1], site: cython.int[::1], wider: cython.int[::1]
+        self,
+        planar: Planar,
+        step: cython.double[::1],
+        site: cython.int[::1],
+        wider: cython.int[::1],
+        around: cython.int,
     ) -> tuple | None:
         """What is at a site, and what had better be there; None where that is the same.
 
         step: (n,) grey step at each vertex. site: vertices that belong together; wider: those and some more,
-        if all of it can be looked at.
+        if all of it and the pixels around can be looked at.
         """
         better: cython.bint = False
         given: Place
         best: Place
         with cython.nogil:
-            if self.see_site(planar, site, wider):
+            if self.see_site(planar, site, wider, around):
                 self.know(planar, step)
                 better = self.search()
         if not better:
@@ -83,14 +92,14 @@ class Settler(Window):
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)
-    def see_site(self, planar: Planar, site: cython.int[::1], wider: cython.int[::1]) -> cython.bint:
+    def see_site(self, planar: Planar, site: cython.int[::1], wider: cython.int[::1], around: cython.int) -> cython.bint:
         """View the wider site, or at least the site."""
-        return self.view(planar, wider) or (wider.shape[0] > site.shape[0] and self.view(planar, site))
+        return self.view(planar, wider, around) or self.view(planar, site, _AROUND)
 
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)
-    def view(self, planar: Planar, site: cython.int[::1]) -> cython.bint:
+    def view(self, planar: Planar, site: cython.int[::1], around: cython.int) -> cython.bint:
         """Open the window around a site and gather the given place: whether it is to be settled."""
         height: cython.int = self.photo.shape[0]
         width: cython.int = self.photo.shape[1]
@@ -111,10 +120,10 @@ class Settler(Window):
             low_y = fmin(low_y, y)
             high_x = fmax(high_x, x)
             high_y = fmax(high_y, y)
-        low_x = floor(low_x) - _AROUND
-        low_y = floor(low_y) - _AROUND
-        high_x = ceil(high_x) + _AROUND
-        high_y = ceil(high_y) + _AROUND
+        low_x = floor(low_x) - around
+        low_y = floor(low_y) - around
+        high_x = ceil(high_x) + around
+        high_y = ceil(high_y) + around
         if fmax(high_x - low_x, high_y - low_y) + 2 * self.halo > MOST_SIDE:
             return False
         count = planar.within(
@@ -253,8 +262,9 @@ class Settler(Window):
     def settled(self, place: Place, rounds: cython.int, centre: cython.int, wanted: cython.double) -> cython.double:
         """Move the place's vertices to where the photo wants them: its description length up to a constant.
 
-        Infinite where there are too many regions or vertices, where one has left the view, or for thorns: sharp
-        points of short edges, which blur cannot show. The search for it is given up where it will not be as wanted.
+        Infinite where there are too many regions or vertices, where one has left the view or edges cross, or for
+        thorns: sharp points of short edges, which blur cannot show. The search for it is given up where it will not
+        be as wanted.
         """
         vertices: cython.int = 0
         v: cython.int
@@ -272,7 +282,11 @@ class Settler(Window):
         )
         if left_over < 0:
             return INFINITY
-        score += self.pixels * log(left_over / self.pixels + self.floor)
+        score += self.pixels * log(left_over / self.pixels + self.floor) + _REGION * self.regions
+        if rounds > 0:
+            for v in range(place.edges):
+                if place.crosses(place.a[v], place.b[v]):
+                    return INFINITY
         for v in range(place.vertices):
             if self.number[v] >= 0 and not self.in_view(place, v):
                 return INFINITY
@@ -319,6 +333,7 @@ class Settler(Window):
             self.merge()
             self.join()
             self.drop()
+            self.link()
             if self.score >= best_score - 1:
                 self.bend()
             unchanged = turn == 0 and self.score == score
@@ -491,3 +506,55 @@ class Settler(Window):
                 self.other.take(self.best)
                 u = self.other.pass_by(v)
                 self.consider(_GLANCE, u)
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def link(self) -> cython.void:
+        """Try an edge more between two vertices that are close, where the sides of it look different."""
+        u: cython.int
+        v: cython.int
+        self.left_over = self.look(self.best)
+        for u in range(self.best.vertices):
+            for v in range(u):
+                if (
+                    self.best.free[u]
+                    and self.best.free[v]
+                    and self.best.degree[u] > 0
+                    and self.best.degree[v] > 0
+                    and 1 < self.best.apart(u, v) < self.near
+                    and self.best.edges < MOST_EDGES
+                    and not self.best.linked(u, v)
+                    and not self.best.crosses(u, v)
+                    and self.pixels * self.contrast(u, v) > _TELLS * self.left_over
+                ):
+                    self.other.take(self.best)
+                    self.other.edge(u, v, NEW, -1)
+                    self.other.count()
+                    self.consider(_GLANCE, u)
+                    self.look(self.best)
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def contrast(self, u: cython.int, v: cython.int) -> cython.double:
+        """What an edge from u to v might explain, grey²: by what the photo differs beside it from what is seen."""
+        k: cython.int
+        i: cython.int
+        j: cython.int
+        side: cython.int
+        x: cython.double
+        y: cython.double
+        length: cython.double = self.best.apart(u, v)
+        nx: cython.double = (self.best.y[u] - self.best.y[v]) / length
+        ny: cython.double = (self.best.x[v] - self.best.x[u]) / length
+        n: cython.int = 1 + cython.cast(cython.int, length)
+        total: cython.double = 0.0
+        for k in range(n):
+            for side in range(-1, 2, 2):
+                x = self.best.x[u] + (k + 0.5) / n * (self.best.x[v] - self.best.x[u]) + side * nx - self.left
+                y = self.best.y[u] + (k + 0.5) / n * (self.best.y[v] - self.best.y[u]) + side * ny - self.top
+                i = min(self.last_row - 1, max(self.first_row, cython.cast(cython.int, floor(y))))
+                j = min(self.last_column - 1, max(self.first_column, cython.cast(cython.int, floor(x))))
+                total += side * self.rest[i, j]
+        return total * total / (2 * n)

@@ -30,12 +30,14 @@ from penink_cli.model import Floats
 from penink_cli.reconstruction import threads as threading
 
 Ints32 = npt.NDArray[np.int32]
-Site = tuple[Ints32, Ints32]  # vertices; the same and those at the other ends of short edges
+# Vertices; the same and those at the other ends of short edges; how many pixels around those are looked at.
+Site = tuple[Ints32, Ints32, int]
 
 _TURN = 0.6  # radians: at a vertex, or at two that are close, which makes them a corner
 _PASSES = 2
 _LEAST_NOISE = 1 / 255  # a model of flat regions is never better than this
 _FEW, _PIXELS_A_SITE = 400, 6000  # places looked at, the strongest first: a photo's are fewer, a mosaic's all its cells
+_AROUND = 3  # pixels around a place that are looked at; around an open end as many as it may be joined across
 _TOGETHER = 8  # places that a thread takes at once
 
 
@@ -79,7 +81,7 @@ def settle_junctions(
         if turn:
             sites = [site for site in sites if again.intersection(site[0].tolist())]
         again = set()
-        for wave in _waves(sites, [idle[0].segments_in_view(planar, *site) for site in sites]):
+        for wave in _waves(_in_view(planar, sites, idle[0])):
             tasks = (partial(improve, wave[k : k + _TOGETHER]) for k in range(0, len(wave), _TOGETHER))
             found = chain.from_iterable(threading.in_order(tasks, min(workers, len(wave) // _TOGETHER)))
             for site, better in zip(wave, found):
@@ -87,11 +89,24 @@ def settle_junctions(
                     again.update(set(exchange.exchange(*better)).difference(site[0].tolist()))
 
 
-def _waves(sites: list[Site], told_by: list[list[int]]) -> list[list[Site]]:
+def _in_view(planar: Planar, sites: list[Site], settler: Settler) -> list[tuple[Site, list[int]]]:
+    """The sites with the segments that they are told by; the vertices of one that no window shows, one by one."""
+    found = []
+    for site in sites:
+        segments = settler.segments_in_view(planar, *site)
+        if segments or len(site[0]) == 1:
+            found.append((site, segments))
+        else:
+            alone = [(site[0][k : k + 1], site[0][k : k + 1], _AROUND) for k in range(len(site[0]))]
+            found.extend((one, settler.segments_in_view(planar, *one)) for one in alone)
+    return found
+
+
+def _waves(sites: list[tuple[Site, list[int]]]) -> list[list[Site]]:
     """The sites in groups, one group after the other: each site comes after those before it with a common segment."""
     waves: dict[int, list[Site]] = defaultdict(list)
     last: dict[int, int] = defaultdict(int)
-    for site, segments in zip(sites, told_by):
+    for site, segments in sites:
         if segments:
             wave = 1 + max(last[s] for s in segments)
             last.update(dict.fromkeys(segments, wave))
@@ -127,9 +142,12 @@ def _sites(planar: Planar, step: Floats, near: float, width: int, height: int) -
     for k, v in zip(owner[a[next_to]].tolist(), b[next_to].tolist()):
         beside[k].add(v)
     cores = np.split(special, firsts[1:])
-    return [
-        (cores[k], np.concatenate([cores[k], np.array(sorted(beside[group[firsts[k]]]), np.int32)])) for k in chosen
-    ]
+    degree = np.bincount(ends.ravel(), minlength=len(at))
+    sites = []
+    for core in (cores[k] for k in chosen):
+        wider = np.concatenate([core, np.array(sorted(beside[owner[core[0]]]), np.int32)])
+        sites.append((core, wider, int(near) if (degree[core] == 1).any() else _AROUND))
+    return sites
 
 
 def _special(planar: Planar, at: Floats, ends: Ints32, near: float) -> Ints32:
