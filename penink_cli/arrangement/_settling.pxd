@@ -1,6 +1,6 @@
 cimport cython
 
-from penink_cli.arrangement._place cimport Place
+from penink_cli.arrangement._place cimport MOST_VERTICES, Place
 from penink_cli.arrangement._planar cimport Planar
 from penink_cli.arrangement._window cimport Window
 
@@ -8,6 +8,8 @@ from penink_cli.arrangement._window cimport Window
 cdef class Settler(Window):
     cdef double near, floor, unit, score, wanted, left_over
     cdef int halo, pixels
+    cdef bint crowded
+    cdef bint[MOST_VERTICES] central
     cdef Place given, best, chosen, other, trial
     cdef int[15] segments
     cdef double[15][4] lines

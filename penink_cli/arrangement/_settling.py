@@ -3,7 +3,7 @@
 
 import cython
 from cython.cimports.libc.math import INFINITY, ceil, exp, floor, fmax, fmin, log
-from cython.cimports.penink_cli.arrangement._place import MOST_EDGES, NEW, Place
+from cython.cimports.penink_cli.arrangement._place import MOST_EDGES, MOST_VERTICES, NEW, Place
 from cython.cimports.penink_cli.arrangement._planar import Planar
 from cython.cimports.penink_cli.arrangement._regions import MOST_MOVED, MOST_SIDE
 from cython.cimports.penink_cli.arrangement._window import Window
@@ -14,7 +14,7 @@ _AROUND = cython.declare(cython.int, 3)  # pixels around the vertices of a place
 _MARGIN = cython.declare(cython.double, 5.0)  # by which a change may look worse at first glance
 _OPTIMISM = cython.declare(cython.double, 2.0)  # times what a bend promises it may give at most
 _TELLS = cython.declare(cython.double, 6.0)  # variances that the photo differs by beside a missing edge
-_REGION = cython.declare(cython.double, 3.0)  # the logarithm of the pixels that its grey is told by
+_REGION = cython.declare(cython.double, 0.0)  # the logarithm of the pixels that its grey is told by
 _BESIDE = cython.declare(cython.double, 0.5)  # pixels outside, where a vertex is still seen
 _CROWDED = cython.declare(cython.int, 14)  # edges in a window: no junction, but texture
 _BEND = cython.declare(cython.double, 8.0)  # what a radian of turning costs: a bevel turns as far as its corner
@@ -27,7 +27,7 @@ _STEPS = cython.declare(cython.int, 4)  # changes one after the other at one pla
 _LOOSE = cython.declare(cython.double, 0.5)  # by which a vertex stays where it is, in noise² a pixel²
 _LINE = cython.declare(cython.double, 0.015)  # of step² a pixel, over the blur: what an edge tells of its end
 _TOLD = cython.declare(cython.double, 40.0)  # pixels: longer edges may be curved
-_VERTEX = cython.declare(cython.double, 3.0)  # the logarithm of the pixels that its two coordinates are told by
+_VERTEX = cython.declare(cython.double, 1.0)  # the logarithm of the pixels that its two coordinates are told by
 
 
 @cython.final
@@ -58,9 +58,10 @@ class Settler(Window):
 
     def segments_in_view(
         self, planar: Planar, site: cython.int[::1], wider: cython.int[::1], around: cython.int
-    ) -> list:
-        """The segments that a site is told by; none where it is not to be settled."""
-        return [self.segments[k] for k in range(self.given.edges)] if self.see_site(planar, site, wider, around) else []
+    ) -> tuple:
+        """The segments that a site is told by, none where it is not to be settled, and whether it is crowded."""
+        seen: cython.bint = self.see_site(planar, site, wider, around)
+        return [self.segments[k] for k in range(self.given.edges)] if seen else [], self.crowded
 
     def improve(
         self,
@@ -94,7 +95,17 @@ class Settler(Window):
     @cython.exceptval(check=False)
     def see_site(self, planar: Planar, site: cython.int[::1], wider: cython.int[::1], around: cython.int) -> cython.bint:
         """View the wider site, or at least the site."""
-        return self.view(planar, wider, around) or self.view(planar, site, _AROUND)
+        v: cython.int
+        k: cython.Py_ssize_t
+        if not self.view(planar, wider, around) and not self.view(planar, site, _AROUND):
+            return False
+        for v in range(MOST_VERTICES):
+            self.central[v] = v >= self.given.vertices
+        for v in range(self.given.vertices):
+            for k in range(site.shape[0]):
+                if self.given.name[v] == site[k]:
+                    self.central[v] = True
+        return True
 
     @cython.cfunc
     @cython.nogil
@@ -124,8 +135,6 @@ class Settler(Window):
         low_y = floor(low_y) - around
         high_x = ceil(high_x) + around
         high_y = ceil(high_y) + around
-        if fmax(high_x - low_x, high_y - low_y) + 2 * self.halo > MOST_SIDE:
-            return False
         count = planar.within(
             (low_x - self.halo) / self.unit,
             (low_y - self.halo) / self.unit,
@@ -134,7 +143,8 @@ class Settler(Window):
             self.segments,
             _CROWDED,
         )
-        if count == 0 or count > _CROWDED:
+        self.crowded = count > _CROWDED
+        if count == 0 or self.crowded or fmax(high_x - low_x, high_y - low_y) + 2 * self.halo > MOST_SIDE:
             return False
         self.given.vertices = 0
         self.given.edges = 0
@@ -368,7 +378,11 @@ class Settler(Window):
         """Try short edges as points: where the edges beyond would cross, or at the busier end, or between."""
         e: cython.int
         for e in range(self.best.edges):
-            if self.within(e) and self.best.apart(self.best.a[e], self.best.b[e]) < self.near:
+            if (
+                self.within(e)
+                and self.best.apart(self.best.a[e], self.best.b[e]) < self.near
+                and (self.central[self.best.a[e]] or self.central[self.best.b[e]])
+            ):
                 self.shrink(self.best.a[e], self.best.b[e])
 
     @cython.cfunc
@@ -499,6 +513,7 @@ class Settler(Window):
         for v in range(self.best.vertices):
             if (
                 self.best.free[v]
+                and self.central[v]
                 and self.best.degree[v] == 2
                 and self.best.free[self.best.other(v, -1, 0)]
                 and self.best.free[self.best.other(v, -1, 1)]

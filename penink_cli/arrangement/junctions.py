@@ -90,15 +90,15 @@ def settle_junctions(
 
 
 def _in_view(planar: Planar, sites: list[Site], settler: Settler) -> list[tuple[Site, list[int]]]:
-    """The sites with the segments that they are told by; the vertices of one that no window shows, one by one."""
+    """The sites with the segments that they are told by; the vertices of one too wide for a window, one by one."""
     found = []
     for site in sites:
-        segments = settler.segments_in_view(planar, *site)
-        if segments or len(site[0]) == 1:
+        segments, crowded = settler.segments_in_view(planar, *site)
+        if segments or crowded or len(site[0]) == 1:
             found.append((site, segments))
         else:
             alone = [(site[0][k : k + 1], site[0][k : k + 1], _AROUND) for k in range(len(site[0]))]
-            found.extend((one, settler.segments_in_view(planar, *one)) for one in alone)
+            found.extend((one, settler.segments_in_view(planar, *one)[0]) for one in alone)
     return found
 
 
@@ -136,7 +136,7 @@ def _sites(planar: Planar, step: Floats, near: float, width: int, height: int) -
     owner = np.full(len(at), -1, np.int32)
     owner[special] = group
     a, b = np.concatenate([ends, ends[:, ::-1]]).T
-    short = np.hypot(*(at[a] - at[b]).T) < 2 * near
+    short = np.hypot(*(at[a] - at[b]).T) < near
     next_to = short & (owner[a] >= 0) & (owner[a] != owner[b]) & inside[b]
     beside: dict[int, set[int]] = defaultdict(set)
     for k, v in zip(owner[a[next_to]].tolist(), b[next_to].tolist()):
