@@ -114,7 +114,6 @@ class Regions:
         """
         i: cython.int
         a: cython.int
-        b: cython.int
         run: cython.int = 0
         self.block(place)
         for i in range(self.rows * FINE):

@@ -2,43 +2,32 @@
 """Compiled: one corner or junction after the other changed until it explains the photo best. See junctions.py."""
 
 import cython
-from cython.cimports.libc.math import INFINITY, ceil, exp, floor, fmax, fmin, log
-from cython.cimports.penink_cli.arrangement._place import MOST_EDGES, MOST_VERTICES, NEW, Place
+from cython.cimports.libc.math import INFINITY, fabs, floor, fmax, fmin, log
+from cython.cimports.penink_cli.arrangement._place import MOST_EDGES, NEW, Place
 from cython.cimports.penink_cli.arrangement._planar import Planar
-from cython.cimports.penink_cli.arrangement._regions import MOST_MOVED, MOST_SIDE
-from cython.cimports.penink_cli.arrangement._window import Window
+from cython.cimports.penink_cli.arrangement._view import AROUND, VERTEX, View
 
 COMPILED = cython.compiled
 
-_AROUND = cython.declare(cython.int, 3)  # pixels around the vertices of a place that are compared with the photo
 _MARGIN = cython.declare(cython.double, 5.0)  # by which a change may look worse at first glance
 _OPTIMISM = cython.declare(cython.double, 2.0)  # times what a bend promises it may give at most
 _TELLS = cython.declare(cython.double, 6.0)  # variances that the photo differs by beside a missing edge
-_REGION = cython.declare(cython.double, 0.0)  # the logarithm of the pixels that its grey is told by
-_BESIDE = cython.declare(cython.double, 0.5)  # pixels outside, where a vertex is still seen
-_CROWDED = cython.declare(cython.int, 14)  # edges in a window: no junction, but texture
-_BEND = cython.declare(cython.double, 8.0)  # what a radian of turning costs: a bevel turns as far as its corner
-_SHARP = cython.declare(cython.double, 1.65)  # radians that the way turns at a thorn
-_ARM = cython.declare(cython.double, 0.75)  # of how far blur reaches: a thorn's shorter edge
+_EXPLAINED = cython.declare(cython.double, 0.75)  # of what was left over may still be with an edge more
+_STEP = cython.declare(cython.double, 0.03)  # grey that the sides of a missing edge differ by at least
+_FLAT = cython.declare(cython.double, 4.0)  # times the noise: where more is left over, regions are not flat
 _BENT = cython.declare(cython.double, 2.0)  # pixels: shorter edges have no bend
 _ROUNDS = cython.declare(cython.int, 5)  # of Gauss and Newton, to settle
 _GLANCE = cython.declare(cython.int, 2)  # and to tell whether a change is worth it
 _STEPS = cython.declare(cython.int, 4)  # changes one after the other at one place
-_LOOSE = cython.declare(cython.double, 0.5)  # by which a vertex stays where it is, in noise² a pixel²
-_LINE = cython.declare(cython.double, 0.015)  # of step² a pixel, over the blur: what an edge tells of its end
-_TOLD = cython.declare(cython.double, 40.0)  # pixels: longer edges may be curved
-_VERTEX = cython.declare(cython.double, 1.0)  # the logarithm of the pixels that its two coordinates are told by
 
 
 @cython.final
 @cython.cclass
-class Settler(Window):
-    """Looks at a place through a window, and finds what had better be there.
+class Settler(View):
+    """Finds what had better be at a place.
 
-    near: how far (pixels) blur may have moved things apart; halo: how far it reaches; floor: least variance of
-    what a model leaves unexplained, grey²; unit: pixels. given, best: the place before and after; pixels: how
-    many are compared; segments: the arrangement's in the window, lines: what is known of each: its normal, its offset
-    and the weight of what lies outside.
+    best: what is known to be best, with left_over to explain; chosen, score: the best of the changes to it;
+    other: the change that is considered; wanted: the score that it must have to be of interest.
     """
 
     def __init__(
@@ -51,17 +40,8 @@ class Settler(Window):
         floor: cython.double,
         unit: cython.double,
     ):
-        Window.__init__(self, photo, taps, spread)
-        self.near, self.halo, self.floor, self.unit = near, halo, floor, unit
-        self.given, self.best = Place(), Place()
-        self.chosen, self.other, self.trial = Place(), Place(), Place()
-
-    def segments_in_view(
-        self, planar: Planar, site: cython.int[::1], wider: cython.int[::1], around: cython.int
-    ) -> tuple:
-        """The segments that a site is told by, none where it is not to be settled, and whether it is crowded."""
-        seen: cython.bint = self.see_site(planar, site, wider, around)
-        return [self.segments[k] for k in range(self.given.edges)] if seen else [], self.crowded
+        View.__init__(self, photo, taps, spread, near, halo, floor, unit)
+        self.best, self.chosen, self.other = Place(), Place(), Place()
 
     def improve(
         self,
@@ -93,235 +73,6 @@ class Settler(Window):
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)
-    def see_site(self, planar: Planar, site: cython.int[::1], wider: cython.int[::1], around: cython.int) -> cython.bint:
-        """View the wider site, or at least the site."""
-        v: cython.int
-        k: cython.Py_ssize_t
-        if not self.view(planar, wider, around) and not self.view(planar, site, _AROUND):
-            return False
-        for v in range(MOST_VERTICES):
-            self.central[v] = v >= self.given.vertices
-        for v in range(self.given.vertices):
-            for k in range(site.shape[0]):
-                if self.given.name[v] == site[k]:
-                    self.central[v] = True
-        return True
-
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def view(self, planar: Planar, site: cython.int[::1], around: cython.int) -> cython.bint:
-        """Open the window around a site and gather the given place: whether it is to be settled."""
-        height: cython.int = self.photo.shape[0]
-        width: cython.int = self.photo.shape[1]
-        k: cython.int
-        v: cython.int
-        count: cython.int
-        free: cython.int = 0
-        x: cython.double
-        y: cython.double
-        low_x: cython.double = INFINITY
-        low_y: cython.double = INFINITY
-        high_x: cython.double = -INFINITY
-        high_y: cython.double = -INFINITY
-        for k in range(site.shape[0]):
-            x = planar.vertices[site[k], 0] * self.unit
-            y = planar.vertices[site[k], 1] * self.unit
-            low_x = fmin(low_x, x)
-            low_y = fmin(low_y, y)
-            high_x = fmax(high_x, x)
-            high_y = fmax(high_y, y)
-        low_x = floor(low_x) - around
-        low_y = floor(low_y) - around
-        high_x = ceil(high_x) + around
-        high_y = ceil(high_y) + around
-        count = planar.within(
-            (low_x - self.halo) / self.unit,
-            (low_y - self.halo) / self.unit,
-            (high_x + self.halo) / self.unit,
-            (high_y + self.halo) / self.unit,
-            self.segments,
-            _CROWDED,
-        )
-        self.crowded = count > _CROWDED
-        if count == 0 or self.crowded or fmax(high_x - low_x, high_y - low_y) + 2 * self.halo > MOST_SIDE:
-            return False
-        self.given.vertices = 0
-        self.given.edges = 0
-        for k in range(count):
-            self.given.edge(
-                self.vertex_of(planar, planar.ends[self.segments[k], 0]),
-                self.vertex_of(planar, planar.ends[self.segments[k], 1]),
-                self.segments[k],
-                k,
-            )
-        self.given.count()
-        for v in range(self.given.vertices):
-            x = self.given.x[v]
-            y = self.given.y[v]
-            self.given.free[v] = low_x <= x <= high_x and low_y <= y <= high_y and 0 < x < width and 0 < y < height
-            free += self.given.free[v]
-        if free > MOST_MOVED:
-            for v in range(self.given.vertices):
-                self.given.free[v] = False
-            for k in range(site.shape[0]):
-                for v in range(self.given.vertices):
-                    if self.given.name[v] == site[k]:
-                        self.given.free[v] = True
-            if site.shape[0] > MOST_MOVED:
-                return False
-        if self.given.closed():
-            return False
-        self.pixels = self.open(
-            cython.cast(cython.int, low_y) - self.halo,
-            cython.cast(cython.int, low_x) - self.halo,
-            cython.cast(cython.int, high_y) + self.halo,
-            cython.cast(cython.int, high_x) + self.halo,
-            self.halo,
-        )
-        return True
-
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def vertex_of(self, planar: Planar, name: cython.int) -> cython.int:
-        """The given place's vertex of that name, entered where it is new."""
-        v: cython.int
-        for v in range(self.given.vertices):
-            if self.given.name[v] == name:
-                return v
-        v = self.given.vertex(planar.vertices[name, 0] * self.unit, planar.vertices[name, 1] * self.unit, name)
-        return v
-
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def know(self, planar: Planar, step: cython.double[::1]) -> cython.void:
-        """Fill in `lines`; an edge that does not lead out of the window tells nothing."""
-        e: cython.int
-        v: cython.int
-        u: cython.int
-        length: cython.double
-        outside: cython.double
-        across: cython.double
-        nx: cython.double
-        ny: cython.double
-        for e in range(self.given.edges):
-            v = self.given.a[e] if self.given.free[self.given.a[e]] else self.given.b[e]
-            u = self.given.a[e] + self.given.b[e] - v
-            length = self.given.apart(u, v)
-            outside = fmin(length, _TOLD) - _AROUND - 1
-            if self.given.free[v] == self.given.free[u] or outside <= 0:
-                self.given.line[e] = -1
-                continue
-            nx = (self.given.y[v] - self.given.y[u]) / length
-            ny = (self.given.x[u] - self.given.x[v]) / length
-            across = fmax(step[self.given.name[v]], step[self.given.name[u]])
-            self.lines[e][0] = nx
-            self.lines[e][1] = ny
-            self.lines[e][2] = nx * (self.given.x[v] - self.left) + ny * (self.given.y[v] - self.top)
-            self.lines[e][3] = _LINE * across * across * outside / self.spread
-
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def hold(self, place: Place, centre: cython.int) -> cython.bint:
-        """Number the vertices to be moved, as `enumerate`, and hold each where it is and on its lines."""
-        v: cython.int
-        k: cython.int
-        e: cython.int
-        end: cython.int
-        x: cython.double
-        y: cython.double
-        w: cython.double = _LOOSE * self.floor
-        line: cython.p_double
-        held: cython.p_double
-        if not self.enumerate(place, centre):
-            return False
-        for v in range(place.vertices):
-            k = self.number[v]
-            if k >= 0:
-                x = place.x[v] - self.left
-                y = place.y[v] - self.top
-                held = cython.address(self.held[k, 0])
-                held[0] = held[2] = w
-                held[1] = 0.0
-                held[3] = w * x
-                held[4] = w * y
-                held[5] = w * (x * x + y * y)
-        for e in range(place.edges):
-            if place.line[e] < 0:
-                continue
-            line = cython.address(self.lines[place.line[e]][0])
-            for end in range(2):
-                k = self.number[place.b[e] if end else place.a[e]]
-                if k >= 0:
-                    held = cython.address(self.held[k, 0])
-                    w = line[3]
-                    held[0] += w * line[0] * line[0]
-                    held[1] += w * line[0] * line[1]
-                    held[2] += w * line[1] * line[1]
-                    held[3] += w * line[0] * line[2]
-                    held[4] += w * line[1] * line[2]
-                    held[5] += w * line[2] * line[2]
-        return True
-
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def settled(self, place: Place, rounds: cython.int, centre: cython.int, wanted: cython.double) -> cython.double:
-        """Move the place's vertices to where the photo wants them: its description length up to a constant.
-
-        Infinite where there are too many regions or vertices, where one has left the view or edges cross, or for
-        thorns: sharp points of short edges, which blur cannot show. The search for it is given up where it will not
-        be as wanted.
-        """
-        vertices: cython.int = 0
-        v: cython.int
-        left_over: cython.double
-        turn: cython.double
-        arm: cython.double = 0.0
-        score: cython.double
-        if not self.hold(place, centre):
-            return INFINITY
-        for v in range(place.vertices):
-            vertices += place.degree[v] > 0
-        score = _VERTEX * vertices
-        left_over = self.settle(
-            place, self.trial, rounds, self.pixels * (exp((wanted - score) / self.pixels) - self.floor)
-        )
-        if left_over < 0:
-            return INFINITY
-        score += self.pixels * log(left_over / self.pixels + self.floor) + _REGION * self.regions
-        if rounds > 0:
-            for v in range(place.edges):
-                if place.crosses(place.a[v], place.b[v]):
-                    return INFINITY
-        for v in range(place.vertices):
-            if self.number[v] >= 0 and not self.in_view(place, v):
-                return INFINITY
-            if place.degree[v] == 2 and place.free[v]:
-                turn = place.turn(v, cython.address(arm))
-                if rounds > 0 and turn > _SHARP and arm < _ARM * self.near:
-                    return INFINITY
-                score += _BEND * turn
-        return score
-
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def in_view(self, place: Place, v: cython.int) -> cython.bint:
-        """Whether a vertex is among the pixels that are compared, or close by."""
-        x: cython.double = place.x[v] - self.left
-        y: cython.double = place.y[v] - self.top
-        return (
-            self.first_column - _BESIDE <= x <= self.last_column + _BESIDE
-            and self.first_row - _BESIDE <= y <= self.last_row + _BESIDE
-        )
-
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
     def search(self) -> cython.bint:
         """From the given place by single changes to the best: whether that is another."""
         best_score: cython.double
@@ -329,6 +80,8 @@ class Settler(Window):
         unchanged: cython.bint
         turn: cython.int
         self.best.take(self.given)
+        self.left_over = self.look(self.best)
+        self.trust = fmin(1.0, _FLAT * self.pixels * self.floor / fmax(1e-12, self.left_over))
         best_score = self.settled(self.best, 0, -1, INFINITY)
         if best_score == INFINITY:
             return False
@@ -366,8 +119,9 @@ class Settler(Window):
     @cython.exceptval(check=False)
     def consider(self, rounds: cython.int, centre: cython.int) -> cython.void:
         """Settle `other`, or only around a vertex, and choose it if it is better than what is chosen."""
-        score: cython.double = self.settled(self.other, rounds, centre, fmin(self.score, self.wanted))
-        if score < self.score:
+        wanted: cython.double = fmin(self.score, self.wanted)
+        score: cython.double = self.settled(self.other, rounds, centre, wanted)
+        if score < wanted:
             self.score = score
             self.chosen.take(self.other)
 
@@ -378,11 +132,7 @@ class Settler(Window):
         """Try short edges as points: where the edges beyond would cross, or at the busier end, or between."""
         e: cython.int
         for e in range(self.best.edges):
-            if (
-                self.within(e)
-                and self.best.apart(self.best.a[e], self.best.b[e]) < self.near
-                and (self.central[self.best.a[e]] or self.central[self.best.b[e]])
-            ):
+            if self.within(e) and self.best.apart(self.best.a[e], self.best.b[e]) < self.near:
                 self.shrink(self.best.a[e], self.best.b[e])
 
     @cython.cfunc
@@ -472,9 +222,9 @@ class Settler(Window):
             if self.best.free[a] and self.best.free[b] and length > _BENT:
                 self.bow(e, 0.5)
             elif self.best.free[a] and length > 2 * _BENT:
-                self.bow(e, fmin(0.5, _AROUND / length))
+                self.bow(e, fmin(0.5, AROUND / length))
             elif self.best.free[b] and length > 2 * _BENT:
-                self.bow(e, 1 - fmin(0.5, _AROUND / length))
+                self.bow(e, 1 - fmin(0.5, AROUND / length))
 
     @cython.cfunc
     @cython.nogil
@@ -489,7 +239,7 @@ class Settler(Window):
         if self.best.edges == MOST_EDGES:
             return
         gain = fmin(self.left_over, _OPTIMISM * self.promise(self.best, e, part)) / self.pixels
-        if self.pixels * log(rest / (rest - gain)) < _VERTEX:
+        if self.pixels * log(rest / (rest - gain)) < VERTEX:
             return
         self.other.take(self.best)
         v = self.other.vertex(
@@ -513,7 +263,6 @@ class Settler(Window):
         for v in range(self.best.vertices):
             if (
                 self.best.free[v]
-                and self.central[v]
                 and self.best.degree[v] == 2
                 and self.best.free[self.best.other(v, -1, 0)]
                 and self.best.free[self.best.other(v, -1, 1)]
@@ -526,10 +275,14 @@ class Settler(Window):
     @cython.nogil
     @cython.exceptval(check=False)
     def link(self) -> cython.void:
-        """Try an edge more between two vertices that are close, where the sides of it look different."""
+        """Try an edge more between two vertices that are close, where its sides look different and it explains much."""
+        rest: cython.double
+        wanted: cython.double = self.wanted
         u: cython.int
         v: cython.int
         self.left_over = self.look(self.best)
+        rest = self.left_over / self.pixels
+        self.wanted += self.pixels * log((_EXPLAINED * rest + self.floor) / (rest + self.floor)) - _MARGIN
         for u in range(self.best.vertices):
             for v in range(u):
                 if (
@@ -548,12 +301,13 @@ class Settler(Window):
                     self.other.count()
                     self.consider(_GLANCE, u)
                     self.look(self.best)
+        self.wanted = wanted
 
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)
     def contrast(self, u: cython.int, v: cython.int) -> cython.double:
-        """What an edge from u to v might explain, grey²: by what the photo differs beside it from what is seen."""
+        """What an edge from u to v might explain, grey²: by how the photo beside it differs from what is rendered."""
         k: cython.int
         i: cython.int
         j: cython.int
@@ -572,4 +326,4 @@ class Settler(Window):
                 i = min(self.last_row - 1, max(self.first_row, cython.cast(cython.int, floor(y))))
                 j = min(self.last_column - 1, max(self.first_column, cython.cast(cython.int, floor(x))))
                 total += side * self.rest[i, j]
-        return total * total / (2 * n)
+        return total * total / (2 * n) if fabs(total) > _STEP * n else 0.0

@@ -37,6 +37,7 @@ _TURN = 0.6  # radians: at a vertex, or at two that are close, which makes them 
 _PASSES = 2
 _LEAST_NOISE = 1 / 255  # a model of flat regions is never better than this
 _FEW, _PIXELS_A_SITE = 400, 6000  # places looked at, the strongest first: a photo's are fewer, a mosaic's all its cells
+_BESIDE = 1.5  # times how far blur reaches: what is beside a place is looked at with it
 _AROUND = 3  # pixels around a place that are looked at; around an open end as many as it may be joined across
 _TOGETHER = 8  # places that a thread takes at once
 
@@ -119,7 +120,7 @@ def _sites(planar: Planar, step: Floats, near: float, width: int, height: int) -
     at = np.asarray(planar.vertices) * UNIT
     ends = np.asarray(planar.ends)
     ends = ends[np.asarray(planar.live)[: len(ends)].astype(bool)]
-    inside = ((at > 0) & (at < (width, height))).all(axis=1)
+    inside = np.asarray(((at > 0) & (at < (width, height))).all(axis=1))
     special = _special(planar, at, ends, near)
     special = special[inside[special]]
     if not len(special):
@@ -136,8 +137,8 @@ def _sites(planar: Planar, step: Floats, near: float, width: int, height: int) -
     owner = np.full(len(at), -1, np.int32)
     owner[special] = group
     a, b = np.concatenate([ends, ends[:, ::-1]]).T
-    short = np.hypot(*(at[a] - at[b]).T) < near
-    next_to = short & (owner[a] >= 0) & (owner[a] != owner[b]) & inside[b]
+    short = np.linalg.norm(at[a] - at[b], axis=1) < _BESIDE * near
+    next_to = np.flatnonzero(short & (owner[a] >= 0) & (owner[a] != owner[b]) & inside[b])
     beside: dict[int, set[int]] = defaultdict(set)
     for k, v in zip(owner[a[next_to]].tolist(), b[next_to].tolist()):
         beside[k].add(v)

@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 import numpy.typing as npt
 
-from penink_cli.arrangement import _planar, _points
+from penink_cli.arrangement import _points, _shorten
 from penink_cli.arrangement._planar import Planar
 from penink_cli.arrangement.planar import UNIT, to_units
 
@@ -60,7 +60,7 @@ def simplify(planar: Planar, tolerance: float, width: int, height: int) -> None:
     kept = np.zeros(len(path), np.uint8)
     stack = np.zeros((len(path) + 2, 2), np.int32)
     for first, last in pairwise(offset.tolist()):
-        _planar.shorten(planar, path[first:last], segment[first : last - 1], tolerance / UNIT, stack, kept[first:last])
+        _shorten.shorten(planar, path[first:last], segment[first : last - 1], tolerance / UNIT, stack, kept[first:last])
 
     run_first, run_last = np.zeros(len(ends), np.int32), np.full(len(ends), -1, np.int32)
     stops = np.flatnonzero(kept)
@@ -77,4 +77,6 @@ def simplify(planar: Planar, tolerance: float, width: int, height: int) -> None:
     movable = np.flatnonzero((degree > 1) & inner).astype(np.int32)
     furthest = tolerance / UNIT
     right, bottom = limit.tolist()
-    _planar.settle(planar, movable, around_first, around, run_first, run_last, places, furthest, right, bottom, _SWEEPS)
+    _shorten.settle(
+        planar, movable, around_first, around, run_first, run_last, places, furthest, right, bottom, _SWEEPS
+    )

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.ndimage import gaussian_filter, label
 
-from penink_cli.arrangement import _exchange, _place, _regions, _settling, _window
+from penink_cli.arrangement import _exchange, _place, _regions, _settling, _shorten, _view, _window
 from penink_cli.arrangement._place import Place
 from penink_cli.arrangement.detection import detect_edges
 from penink_cli.arrangement.junctions import _taps
@@ -15,7 +15,7 @@ FINE = _regions.FINENESS
 
 
 def test_the_compiled_kernels_are_under_test():
-    assert all(kernel.COMPILED for kernel in (_exchange, _place, _regions, _settling, _window))
+    assert all(kernel.COMPILED for kernel in (_exchange, _place, _regions, _settling, _shorten, _view, _window))
 
 
 def seen_by(tip, blur, size=20, grey=(0.3, 0.7)):
