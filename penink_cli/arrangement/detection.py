@@ -24,7 +24,7 @@ TOLERANCE = 0.3
 MIN_LENGTH = 6.0
 TELLING = 13.0  # the median of grass and fur is 6, of outlines over 20
 _ALONE = 2.0  # times as steep as what is around: texture reaches 1.4 to 2, letters 2.5 to 3.3
-_BRIDGE = 0.4  # of that is enough for a chain that leads from one telling chain to another, or to the frame
+_BRIDGE = 0.4  # of that is enough for a chain that leads from a telling chain to another, or to the frame
 _LEAST_LENS = 0.32  # pixels
 _OWN = 1 / 12 + 1 / 3  # variance, pixels², of what a pixel's area and the central difference add to a blur
 _CAMERA_BLUR = 0.8  # pixels: pixel area, lens and the central difference, where nothing better is known
@@ -122,7 +122,8 @@ def _telling(points: EdgePoints, chains: Chains, high: float, min_length: float,
     chains, telling = chains.where(candidates), size[candidates] >= TELLING
     blur = _blur(points, chains.where(telling), sigma)
     ends = loose_ends(points, chains, blur, telling)
-    joined = (ends.meets | ends.to_frame).reshape(2, -1).all(axis=0)
+    meets = ends.meets.reshape(2, -1)
+    joined = meets.any(axis=0) & (meets | ends.to_frame.reshape(2, -1)).all(axis=0)
     telling[np.flatnonzero(~chains.ring)[joined]] = True
     return chains.where(telling)
 
