@@ -172,6 +172,20 @@ class Place:
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)
+    def on_ring(self, v: cython.int) -> cython.bint:
+        """Whether the way from v on leads back to it, past vertices of two edges."""
+        before: cython.int = v
+        at: cython.int = self.other(v, -1, 0)
+        following: cython.int
+        while at >= 0 and at != v and self.degree[at] == 2:
+            following = self.other(at, before, 0)
+            before = at
+            at = following
+        return at == v and self.degree[v] == 2
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
     def closed(self) -> cython.bint:
         """Whether no edge leads out of the free vertices: a speck."""
         e: cython.int

@@ -114,14 +114,20 @@ class View(Window):
         for v in range(self.given.vertices):
             x = self.given.x[v]
             y = self.given.y[v]
-            self.given.free[v] = low_x <= x <= high_x and low_y <= y <= high_y and 0 < x < width and 0 < y < height
+            self.given.free[v] = (
+                low_x <= x <= high_x
+                and low_y <= y <= high_y
+                and 0 < x < width
+                and 0 < y < height
+                and not self.given.on_ring(v)  # through blur a speck looks alike with fewer vertices: round is better
+            )
             free += self.given.free[v]
         if free > MOST_MOVED:
             for v in range(self.given.vertices):
                 self.given.free[v] = False
             for k in range(site.shape[0]):
                 for v in range(self.given.vertices):
-                    if self.given.name[v] == site[k]:
+                    if self.given.name[v] == site[k] and not self.given.on_ring(v):
                         self.given.free[v] = True
             if site.shape[0] > MOST_MOVED:
                 return False
