@@ -34,6 +34,7 @@ Ints32 = npt.NDArray[np.int32]
 Site = tuple[Ints32, Ints32, int]
 
 _TURN = 0.6  # radians: at a vertex, or at two that are close, which makes them a corner
+_GENTLE = 1.0  # radians at one vertex of a curve
 _PASSES = 2
 _LEAST_NOISE = 1 / 255  # a model of flat regions is never better than this
 _FEW, _PIXELS_A_SITE = 400, 6000  # places looked at, the strongest first: a photo's are fewer, a mosaic's all its cells
@@ -175,8 +176,19 @@ def _special(planar: Planar, at: Floats, ends: Ints32, near: float) -> Ints32:
     both = np.abs(np.where(after[a] == b, turn[a], -turn[a]) + np.where(before[b] == a, turn[b], -turn[b]))
     np.maximum.at(most, a, both)
     np.maximum.at(most, b, both)
+    most[_on_curve(turn, before, after, middle)] = 0
     found = np.concatenate([np.flatnonzero((degree > 2) | (middle & (most > _TURN))), open_ends[beside == 1]])
     return np.sort(found).astype(np.int32)
+
+
+def _on_curve(turn: Floats, before: Ints32, after: Ints32, middle: npt.NDArray[np.bool_]) -> npt.NDArray[np.intp]:
+    """Vertices of two edges where the way turns gently, and so it does before and after: nothing to be sharpened."""
+    v = np.flatnonzero(middle & (np.abs(turn) < _GENTLE))
+    u, w = before[v], after[v]
+    steady = middle[u] & middle[w]
+    for other, follows in ((u, after[u] == v), (w, before[w] == v)):
+        steady &= np.where(follows, turn[other], -turn[other]) * np.sign(turn[v]) > 0.5 * np.abs(turn[v])
+    return np.asarray(v[steady])
 
 
 def _angle(p: Floats, q: Floats, r: Floats) -> Floats:
