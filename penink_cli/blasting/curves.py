@@ -54,20 +54,18 @@ def segments_of(first: Ints) -> Ints:
     return (np.diff(first) - 1) // 3
 
 
-def control_polygons(points: Floats, first: Ints) -> tuple[Floats, Ints]:
-    """The cubics (m, 4, 2) of all curves, and the curve (m,) that each belongs to."""
+def begins_of(first: Ints) -> Ints:
+    """(m,) at which of the points each cubic segment of all curves begins."""
     k = segments_of(first)
-    owner = np.repeat(np.arange(len(k)), k)
-    at = first[owner] + 3 * ramp(k)
-    return points[at[:, None] + np.arange(4)], owner
+    return np.asarray(np.repeat(first[:-1], k) + 3 * ramp(k), np.int64)
 
 
 def pieces_of(points: Floats, first: Ints, step: float) -> Ints:
     """Into how many pieces of about step each cubic segment is sampled, by its control polygon."""
-    control, _ = control_polygons(points, first)
-    legs = np.diff(control, axis=1)
-    length = np.sqrt(legs[..., 0] ** 2 + legs[..., 1] ** 2)
-    total = length[:, 0] + length[:, 1] + length[:, 2]
+    legs = np.diff(points, axis=0)
+    length = np.sqrt(legs[:, 0] ** 2 + legs[:, 1] ** 2)
+    at = begins_of(first)
+    total = length[at] + length[at + 1] + length[at + 2]
     return np.maximum(1, np.ceil(total / step - 1e-9)).astype(np.int64)
 
 
@@ -119,13 +117,15 @@ def cut(points: Floats, first: Ints, pieces: Ints, curve: Ints, a: Floats, b: Fl
     begin = starts(sizes)
     out = np.empty((begin[-1], 2))
     if len(seg):
-        control, _ = control_polygons(points, first)
         m = pieces[seg].astype(float)
         t0 = np.clip((a[part] - offset[seg]) / m, 0.0, 1.0)
         t1 = np.clip((b[part] - offset[seg]) / m, 0.0, 1.0)
-        cubics = blossom(control[seg], t0, t1)
-        at = begin[part] + 3 * ramp(n)
+        # most are whole
+        at, source = begin[part] + 3 * ramp(n), begins_of(first)[seg]
         for j in range(4):
-            out[at + j] = cubics[:, j]
+            out[at + j] = points[source + j]
+        some = np.flatnonzero((t0 > 0.0) | (t1 < 1.0))
+        four = np.arange(4)
+        out[at[some, None] + four] = blossom(points[source[some, None] + four], t0[some], t1[some])
     out[begin[:-1][dots]] = points[first[curve[dots]]]
     return out, begin
