@@ -8,7 +8,8 @@ from penink_cli.arrangement import _exchange, _place, _regions, _settling, _shor
 from penink_cli.arrangement._place import Place
 from penink_cli.arrangement.detection import detect_edges
 from penink_cli.arrangement.junctions import _taps
-from tests.benchmarks._scenes import Scene, polygon
+from penink_cli.reconstruction import threads
+from tests.benchmarks._scenes import Scene, disc, polygon, random_scene
 from tests.benchmarks.edges import along
 
 FINE = _regions.FINENESS
@@ -97,3 +98,42 @@ def test_a_tip_of_forty_degrees_is_closed(blur, noise):
     assert (ends == 2).all()
     for corner in scene.shapes[0].corners:
         assert np.hypot(*(seen - corner).T).min() < 1
+
+
+def closed(scene, edges, places):
+    """Whether edges come within a pixel of each place, and none ends near it."""
+    seen = along(edges)
+    ends = edges.vertices[np.bincount(edges.edges.ravel(), minlength=len(edges.vertices)) == 1]
+    return all(
+        np.hypot(*(seen - place).T).min() < 1 and not (np.hypot(*(ends - place).T) < 3).any() for place in places
+    )
+
+
+@pytest.mark.parametrize(("blur", "noise"), [(0.5, 2), (1.0, 0), (1.0, 2)])
+def test_a_corner_close_to_a_junction_is_no_bevel(blur, noise):
+    below = polygon([(30, 30), (60, 33), (57, 70), (27, 66)], (0.75, 0, 0))
+    above = polygon([(62.5, 40), (90, 34), (90, 80), (50, 84), (52, 45)], (0.15, 0, 0))
+    scene = Scene(100, [below, above])
+    corners, tees = scene.junctions()
+    assert len(tees) == 2
+    assert closed(scene, detect_edges(scene.photo(blur, noise, 5)), [*corners, *tees])
+
+
+@pytest.mark.parametrize("radius", [3, 5])
+def test_what_is_round_stays_round(radius):
+    scene = Scene(60, [disc(30.3, 29.8, radius, (0.2, 0, 0))])
+    edges = detect_edges(scene.photo(0.7, 1, 2))
+    off = np.hypot(*(along(edges) - (30.3, 29.8)).T) - radius
+    assert len(edges.edges) >= 8
+    assert np.sqrt(np.mean(off**2)) < 0.15
+
+
+def test_the_result_does_not_depend_on_threads(monkeypatch):
+    scene = random_scene(7, size=120)
+    photo = scene.photo(1.0, 2, 7)
+    found = []
+    for count in (1, 3):
+        monkeypatch.setattr(threads, "count", lambda asked, count=count: count)
+        edges = detect_edges(photo)
+        found.append((edges.vertices.tobytes(), edges.edges.tobytes()))
+    assert found[0] == found[1]
