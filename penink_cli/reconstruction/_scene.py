@@ -13,6 +13,8 @@ from cython.cimports.penink_cli.arrangement._predicates import orient
 COMPILED = cython.compiled
 
 PAD = 1e-7
+MANY = cython.declare(cython.int, 4096)  # edges from which on they are numbered by their place,
+FAR = cython.declare(cython.double, 8.0)  # if this far lies between one vertex and the next in the mean: not in chains
 FEW = cython.declare(cython.int, 3)  # edges in a row of cells that are looked at without finding the cells
 
 
@@ -101,6 +103,13 @@ class Scene:
         y = np.ascontiguousarray(vertices[:, 1], np.float64)
         a = np.ascontiguousarray(edges[:, 0], np.intc)
         b = np.ascontiguousarray(edges[:, 1], np.intc)
+        if self.n_edges > MANY and np.abs(np.diff(y)).mean() > FAR:
+            order = by_place(x, y, width, height)
+            rank = np.empty_like(order)
+            rank[order] = np.arange(len(order), dtype=np.intc)
+            x, y, a, b = x[order], y[order], rank[a], rank[b]
+            order = by_place(x[a], y[a], width, height)
+            a, b = a[order], b[order]
         self.arrays = [x, y, a, b]
         if self.n_edges:
             self.vx = doubles(x)
@@ -213,9 +222,7 @@ class Scene:
                 first = self.cell_start[row * self.gw + self.column_of(left)]
                 last = self.cell_start[row * self.gw + self.column_of(right) + 1]
                 if self.n_crowded and last - first >= CROWD:
-                    if self.obstructed_in_crowd(
-                        px, py, qx, qy, u, v, row, self.column_of(left), self.column_of(right)
-                    ):
+                    if self.obstructed_in_crowd(px, py, qx, qy, u, v, row, self.column_of(left), self.column_of(right)):
                         return True
                     continue
             for k in range(first, last):
@@ -325,6 +332,36 @@ class Scene:
         return side_of_query(self.vx[v], self.vy[v], self.vx[a], self.vy[a], qx, qy) == side_of_query(
             self.vx[v], self.vy[v], self.vx[b], self.vy[b], qx, qy
         )
+
+
+def by_place(x: cython.double[::1], y: cython.double[::1], width: cython.int, height: cython.int):
+    """The order (n,) of points by the blocks of 8 × 8 cells they lie in, those of one block as they come.
+
+    What lies close together is then close together in memory: with 20 000 edges in no order everything else takes a
+    seventh longer, for want of a cache that holds them all.
+    """
+    import numpy as np
+
+    k: cython.Py_ssize_t
+    block: cython.int
+    across: cython.int = (width >> 3) + 1
+    down: cython.int = (height >> 3) + 1
+    n: cython.Py_ssize_t = x.shape[0]
+    start: cython.int[::1] = np.zeros(across * down + 1, np.intc)
+    blocks: cython.int[::1] = np.empty(n, np.intc)
+    order = np.empty(n, np.intc)
+    place: cython.int[::1] = order
+    for k in range(n):
+        block = (within(y[k], height) >> 3) * across + (within(x[k], width) >> 3)
+        blocks[k] = block
+        start[block + 1] += 1
+    for k in range(across * down):
+        start[k + 1] += start[k]
+    for k in range(n):
+        block = blocks[k]
+        place[start[block]] = cython.cast(cython.int, k)
+        start[block] += 1
+    return order
 
 
 @cython.cfunc

@@ -231,6 +231,22 @@ def test_no_byte_depends_on_how_many_numbers_the_processor_computes_at_once(pict
             assert all(np.array_equal(values, found[0]) for values in found), (size, way)
 
 
+def test_no_byte_depends_on_the_order_of_edges_and_vertices():
+    rng = np.random.default_rng(13)
+    image = GreyImage(rng.integers(0, 256, (70, 75)).astype(np.uint8))
+    y, x = np.mgrid[:70, :75]  # more than are numbered anew: see `_scene.by_place`
+    start = np.c_[x.ravel(), y.ravel()] + rng.uniform(0.1, 0.4, (5250, 2))
+    vertices = np.concatenate([start, start + rng.uniform(0.1, 0.5, (5250, 2))])
+    lines = np.arange(10500).reshape(2, -1).T
+    found = []
+    for _ in range(2):
+        found.append(enlarge(image, EdgeList(75, 70, vertices, lines), 225, 140, maxval=65535).values)
+        order, rank = rng.permutation(10500), np.empty(10500, np.int64)
+        rank[order] = np.arange(10500)
+        vertices, lines = vertices[order], rank[lines[rng.permutation(5250)]]
+    assert np.array_equal(*found)
+
+
 def test_bands_come_in_order_and_make_up_the_whole(picture, monkeypatch):
     image, edges = picture
     monkeypatch.setattr(enlarging, "BAND", 5000)
