@@ -304,7 +304,7 @@ def reach(
 
     ends: (n,) points; start: (n, 2) where the straight line leaves the chain, direction: (n, 2)
     unit vectors out of it. index: (h, w) point of each pixel or -1. chain, place: the chain of each
-    point (-1: none) and its place along it; an end does not meet its own neighbourhood.
+    point (-1: none) and its place along it; an end does not meet its own neighbourhood, but the other side of a loop.
     target: (n,) filled, -1 for none within radius of the start; cost: (n,) filled, pixels.
     """
     height: cython.int = index.shape[0]
@@ -316,6 +316,7 @@ def reach(
     i: cython.int
     j: cython.int
     other: cython.int
+    way: cython.int
     dx: cython.double
     dy: cython.double
     distance: cython.double
@@ -332,11 +333,12 @@ def reach(
                     other = index[i, j]
                     if other < 0 or other == e or chain[other] < 0:
                         continue
-                    if chain[other] == chain[e] and abs(place[other] - place[e]) < 4 * window:
-                        continue
                     dx = position[other, 0] - start[k, 0]
                     dy = position[other, 1] - start[k, 1]
                     distance = sqrt(dx * dx + dy * dy)
+                    way = abs(place[other] - place[e])
+                    if chain[other] == chain[e] and way < 4 * window and way < 3 * distance + 4:
+                        continue
                     ahead = dx * direction[k, 0] + dy * direction[k, 1]
                     aside = fabs(dx * direction[k, 1] - dy * direction[k, 0])
                     if distance > radius or (ahead < 0 and distance > 1.5) or aside > 1.5 + 0.3 * ahead:
