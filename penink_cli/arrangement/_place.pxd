@@ -28,8 +28,7 @@ cdef class Place:
     cdef bint linked(self, int u, int v) noexcept nogil
     cdef double side(self, int u, int v, int w) noexcept nogil
     cdef bint crosses(self, int u, int v) noexcept nogil
-    cdef bint on_ring(self, int v) noexcept nogil
-    cdef bint closed(self) noexcept nogil
+    cdef void find_leading_out(self) noexcept nogil
     cdef double turn(self, int v, double* arm) noexcept nogil
     cdef void unite(self, int a, int b, double x, double y) noexcept nogil
     cdef void split(self, int e, int v) noexcept nogil

@@ -172,27 +172,26 @@ class Place:
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)
-    def on_ring(self, v: cython.int) -> cython.bint:
-        """Whether the way from v on leads back to it, past vertices of two edges."""
-        before: cython.int = v
-        at: cython.int = self.other(v, -1, 0)
-        following: cython.int
-        while at >= 0 and at != v and self.degree[at] == 2:
-            following = self.other(at, before, 0)
-            before = at
-            at = following
-        return at == v and self.degree[v] == 2
-
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def closed(self) -> cython.bint:
-        """Whether no edge leads out of the free vertices: a speck."""
+    def find_leading_out(self) -> cython.void:
+        """Leave free only vertices that hang together with one that is not: the others are of a speck."""
         e: cython.int
-        for e in range(self.edges):
-            if self.free[self.a[e]] != self.free[self.b[e]]:
-                return False
-        return True
+        a: cython.int
+        b: cython.int
+        v: cython.int
+        more: cython.bint = True
+        out = cython.declare(cython.bint[MOST_VERTICES])
+        for v in range(self.vertices):
+            out[v] = not self.free[v]
+        while more:
+            more = False
+            for e in range(self.edges):
+                a = self.a[e]
+                b = self.b[e]
+                if out[a] != out[b]:
+                    out[a] = out[b] = True
+                    more = True
+        for v in range(self.vertices):
+            self.free[v] = self.free[v] and out[v]
 
     @cython.cfunc
     @cython.nogil

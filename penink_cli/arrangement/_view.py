@@ -73,6 +73,7 @@ class View(Window):
         v: cython.int
         count: cython.int
         free: cython.int = 0
+        named: cython.bint
         x: cython.double
         y: cython.double
         low_x: cython.double = INFINITY
@@ -111,27 +112,31 @@ class View(Window):
                 k,
             )
         self.given.count()
-        for v in range(self.given.vertices):
+        for v in range(self.given.vertices):  # in the window, halo and all
             x = self.given.x[v]
             y = self.given.y[v]
             self.given.free[v] = (
-                low_x <= x <= high_x
-                and low_y <= y <= high_y
+                fmax(low_x - x, x - high_x) <= self.halo
+                and fmax(low_y - y, y - high_y) <= self.halo
                 and 0 < x < width
                 and 0 < y < height
-                and not self.given.on_ring(v)  # through blur a speck looks alike with fewer vertices: round is better
             )
+        # Through blur a speck looks alike with fewer vertices: it stays as it is.
+        self.given.find_leading_out()
+        for v in range(self.given.vertices):
+            x = self.given.x[v]
+            y = self.given.y[v]
+            self.given.free[v] = self.given.free[v] and low_x <= x <= high_x and low_y <= y <= high_y
             free += self.given.free[v]
         if free > MOST_MOVED:
+            free = 0
             for v in range(self.given.vertices):
-                self.given.free[v] = False
-            for k in range(site.shape[0]):
-                for v in range(self.given.vertices):
-                    if self.given.name[v] == site[k] and not self.given.on_ring(v):
-                        self.given.free[v] = True
-            if site.shape[0] > MOST_MOVED:
-                return False
-        if self.given.closed():
+                named = False
+                for k in range(site.shape[0]):
+                    named = named or self.given.name[v] == site[k]
+                self.given.free[v] = self.given.free[v] and named
+                free += self.given.free[v]
+        if free == 0 or free > MOST_MOVED:
             return False
         self.pixels = self.open(
             cython.cast(cython.int, low_y) - self.halo,
