@@ -77,7 +77,6 @@ def reduce(
     samples = read_grey(file, max_pixels)
     height, width = samples.values.shape
     edges = edges or EdgeList(width, height)
-    warn_of_another_shape(edges, samples)
     photo = None
     if photo_file:
         picture = read_photo(photo_file, max_pixels)
