@@ -3,8 +3,9 @@
 Blur rounds corners, and near junctions the gradient belongs to two edges at once, so that chains end
 there in bevels, stubs and bends. Each such place is looked at through a window: the edges part it into
 regions, which are rendered with the greys that suit best, through the photo's own blur (`_window`). The
-vertices settle where this is most like the photo; a short edge may shrink to a point, an open end may
-meet what is near (`_settling`); and of all these the arrangement stays that explains the photo with fewest vertices.
+vertices settle where this is most like the photo; a short edge may shrink to a point, an open end may meet what is
+near, a vertex or an edge be left out or added (`_settling`); and of all these the arrangement stays that explains
+the photo with fewest vertices (`_view`). In texture regions are not flat, and the number of vertices counts less.
 
 Places that are told by a common edge wait for one another in order, others are settled by several threads.
 """
