@@ -160,11 +160,21 @@ def _run(arguments: Sequence[str]) -> int:
     except Exception as error:
         if os.environ.get("PENINK_DEBUG") == "1":
             raise
-        if isinstance(error, ImportError) and "failed to map segment" in str(error):  # a library found no room
+        if _lacks_room(error):
             _complain(path, "not enough memory")
+            return 1
+        if str(error) == "can't start new thread":
+            _complain(path, "no further thread can be started: not enough memory, or too many processes")
             return 1
         _complain(path, f"internal error: {type(error).__name__}: {error} (PENINK_DEBUG=1 shows where)")
         return 1
+
+
+def _lacks_room(error: BaseException | None) -> bool:
+    """Whether a library could not be loaded for want of memory; scipy, for one, says so only in the error's cause."""
+    while error is not None and "failed to map segment" not in str(error):
+        error = error.__cause__ or error.__context__
+    return isinstance(error, ImportError)
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
