@@ -111,7 +111,7 @@ def edge_points(grey: npt.NDArray[np.floating], sigma: float, low: float) -> Edg
     height, width = grey.shape
     tops = range(0, height, _BAND_ROWS)
     bands = (partial(_band, grey, sigma, low, top) for top in tops)
-    found = list(threading.in_order(bands, threading.count(None)))
+    found = list(threading.in_order(bands, min(threading.count(None), len(tops))))
     pixel = np.concatenate([p for p, _ in found])
     values = np.concatenate([v for _, v in found])
     del found
