@@ -47,6 +47,17 @@ class GreyImage:
 
 
 @dataclass(frozen=True, eq=False)
+class ColourImage:
+    """A photograph in its colours, as stored.
+
+    values: (h, w, 3) red, green, blue, uint8 where maxval ≤ 255, else uint16.
+    """
+
+    values: npt.NDArray[np.uint8] | npt.NDArray[np.uint16]
+    maxval: int = 255
+
+
+@dataclass(frozen=True, eq=False)
 class EdgeList:
     """An arrangement of discontinuity edges, in pixels of the photo it was found in.
 

@@ -12,7 +12,7 @@ from penink_cli.errors import FormatError, LimitError, PeninkError
 from penink_cli.options import warn
 
 if TYPE_CHECKING:
-    from penink_cli.model import EdgeList, GreyImage, Illustration
+    from penink_cli.model import ColourImage, EdgeList, GreyImage, Illustration
 
 MAX_MEMBER = 1 << 28  # bytes of a file that a manifest names
 
@@ -31,6 +31,14 @@ def read_photo(path: str | None, max_pixels: int) -> GreyImage:
 
     with streams.reading(path) as stream:
         return photo.read_grey(stream, streams.source_name(path), max_pixels)
+
+
+def read_colours(path: str | None, max_pixels: int) -> GreyImage | ColourImage:
+    """A photograph in its colours, in any of the photo formats; grey where it has none."""
+    from penink_cli.formats import photo
+
+    with streams.reading(path) as stream:
+        return photo.read_colours(stream, streams.source_name(path), max_pixels)
 
 
 def read_edges(path: str | None, max_pixels: int = 0) -> EdgeList | None:

@@ -24,7 +24,7 @@ import numpy.typing as npt
 from penink_cli.errors import FormatError, LimitError, PeninkError, in_quotes, printable
 from penink_cli.formats import damage, pgm
 from penink_cli.formats.signatures import SIGNATURES
-from penink_cli.model import GreyImage
+from penink_cli.model import ColourImage, GreyImage
 
 if TYPE_CHECKING:
     from PIL import Image
@@ -41,12 +41,30 @@ def read_grey(stream: BinaryIO, source: str, max_pixels: int) -> GreyImage:
     Raises FormatError for any other file or a damaged one, LimitError for one that declares more
     than max_pixels pixels, before it is decoded.
     """
+    found = _read(stream, source, max_pixels, colours=False)
+    assert isinstance(found, GreyImage)
+    return found
+
+
+def read_colours(stream: BinaryIO, source: str, max_pixels: int) -> GreyImage | ColourImage:
+    """The same in its colours, on white where it is transparent; grey where it has none. Raises as `read_grey` does."""
+    return _read(stream, source, max_pixels, colours=True)
+
+
+def grey_of(colours: ColourImage) -> GreyImage:
+    """What `read_grey` would have read."""
+    values = colours.values
+    return _by_bands(values.shape[1], values.shape[0], colours.maxval, lambda top, bottom: values[top:bottom])
+
+
+def _read(stream: BinaryIO, source: str, max_pixels: int, colours: bool) -> GreyImage | ColourImage:
     magic = stream.read(2)
     if magic in (b"P2", b"P5"):
         return GreyImage(*pgm.read_raster(stream, source, max_pixels, magic))
     if magic in (b"P3", b"P6"):
         values, maxval = pgm.read_raster(stream, source, max_pixels, magic)
-        return _by_bands(values.shape[1], values.shape[0], maxval, lambda top, bottom: values[top:bottom])
+        found = ColourImage(values, maxval)
+        return found if colours else grey_of(found)
     start = magic + stream.read(14)
     kind = next((name for signature, name in SIGNATURES if start.startswith(signature)), None)
     if kind is None or (kind == "WEBP" and start[8:12] != b"WEBP"):
@@ -56,7 +74,7 @@ def read_grey(stream: BinaryIO, source: str, max_pixels: int) -> GreyImage:
         unknown = FormatError(f"not a PGM, PPM, PNG, JPEG, TIFF or WebP photograph: {shown}", source)
         raise explained(unknown, start + stream.read1(ENOUGH), "photo")  # type: ignore[attr-defined]
     try:
-        return _decoded(_whole(start, stream, kind, max_pixels), kind, max_pixels)
+        return _decoded(_whole(start, stream, kind, max_pixels), kind, max_pixels, colours)
     except PeninkError as error:
         raise error.from_source(source) from None
 
@@ -126,7 +144,7 @@ def _silence() -> Iterator[None]:
         os.close(null)
 
 
-def _decoded(encoded: io.BytesIO, kind: str, max_pixels: int) -> GreyImage:
+def _decoded(encoded: io.BytesIO, kind: str, max_pixels: int, colours: bool) -> GreyImage | ColourImage:
     from PIL import Image
 
     with _pillow_errors(kind), Image.open(encoded, formats=(kind,)) as image:
@@ -140,7 +158,7 @@ def _decoded(encoded: io.BytesIO, kind: str, max_pixels: int) -> GreyImage:
         if kind == "JPEG":
             damage.check_jpeg(encoded.getvalue(), image.mode)
         _turn_upright(image)
-        return _grey(image)
+        return _colours(image) if colours else _grey(image)
 
 
 def _turn_upright(image: Image.Image) -> None:
@@ -149,6 +167,22 @@ def _turn_upright(image: Image.Image) -> None:
 
     with contextlib.suppress(Exception):
         ImageOps.exif_transpose(image, in_place=True)
+
+
+def _colours(image: Image.Image) -> GreyImage | ColourImage:
+    """Colours of a decoded image, on white where it is transparent."""
+    if image.mode in ("1", "L", "I", "F", "LAB", "HSV") or image.mode.startswith("I;16"):
+        return _grey(image)  # or its complaint
+    if not image.has_transparency_data:
+        return ColourImage(np.array(image if image.mode == "RGB" else image.convert("RGB")), 255)
+    image = image.convert("RGBA")
+    width, height = image.size
+    values = np.empty((height, width, 3), np.uint8)
+    step = max(1, BAND // width)
+    for top in range(0, height, step):
+        bottom = min(height, top + step)
+        values[top:bottom] = _on_white(np.asarray(image.crop((0, top, width, bottom))).astype(np.int64))
+    return ColourImage(values, 255)
 
 
 def _grey(image: Image.Image) -> GreyImage:
@@ -194,6 +228,11 @@ def _by_bands(width: int, height: int, maxval: int, band: Callable[[int, int], n
 def _luma(colours: npt.NDArray[np.int64]) -> npt.NDArray[np.int64]:
     """Grey (k, w) of RGB (k, w, 3), or of 8-bit RGBA (k, w, 4) on white."""
     if colours.shape[2] == 4:
-        alpha = colours[..., 3:]
-        colours = (colours[..., :3] * alpha + 255 * (255 - alpha) + 127) // 255
+        colours = _on_white(colours)
     return (colours[..., 0] * RED + colours[..., 1] * GREEN + colours[..., 2] * BLUE + 500) // 1000
+
+
+def _on_white(colours: npt.NDArray[np.int64]) -> npt.NDArray[np.int64]:
+    """RGB (k, w, 3) of 8-bit RGBA (k, w, 4)."""
+    alpha = colours[..., 3:]
+    return (colours[..., :3] * alpha + 255 * (255 - alpha) + 127) // 255

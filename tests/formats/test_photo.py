@@ -14,7 +14,7 @@ from PIL import Image
 
 from penink_cli.errors import FormatError, LimitError, PeninkError
 from penink_cli.formats import damage, pgm, photo
-from penink_cli.model import GreyImage
+from penink_cli.model import ColourImage, GreyImage
 from tests.formats.readers import written
 
 WIDTH, HEIGHT = 7, 5
@@ -27,7 +27,12 @@ FORMATS = ("PNG", "TIFF", "WEBP", "JPEG")
 
 
 def read(data: bytes, max_pixels: int = 10_000) -> GreyImage:
-    return photo.read_grey(io.BytesIO(data), "p.img", max_pixels)
+    """The grey; every test that asks for it asks the same of the colours."""
+    grey = photo.read_grey(io.BytesIO(data), "p.img", max_pixels)
+    found = photo.read_colours(io.BytesIO(data), "p.img", max_pixels)
+    again = photo.grey_of(found) if isinstance(found, ColourImage) else found
+    assert again.maxval == grey.maxval and np.array_equal(again.values, grey.values)
+    return grey
 
 
 def saved(image: Image.Image, kind: str, **options: object) -> bytes:
@@ -74,6 +79,12 @@ def test_pgm_keeps_its_maxval(maxval):
 def test_colour_becomes_luma(kind):
     image = read(saved(Image.fromarray(COLOUR), kind))
     assert image.maxval == 255 and close(image, luma(COLOUR), 3 if kind == "JPEG" else 0.501)
+
+
+@pytest.mark.parametrize("kind", ("PNG", "TIFF", "WEBP", "PPM"))
+def test_colours_are_kept(kind):
+    found = photo.read_colours(io.BytesIO(saved(Image.fromarray(COLOUR), kind)), "p.img", 10_000)
+    assert isinstance(found, ColourImage) and found.maxval == 255 and np.array_equal(found.values, COLOUR)
 
 
 @pytest.mark.parametrize("maxval", [1, 100, 255, 1000, 65535])
