@@ -81,6 +81,50 @@ class EdgeList:
 
 
 @dataclass(frozen=True, eq=False)
+class Lines:
+    """Telling lines: what a pen would draw of a picture besides its tone, in pixels of the photo it was found in.
+
+    width, height: the image frame [0, width] × [0, height], whole photo pixels.
+    points: (p, 2) x, y of all lines, one line after the other.
+    first: (n + 1,) line i owns points[first[i] : first[i + 1]].
+    weight: (p,) how much the pen is pressed at each point, 0 the finest line it draws … 1 the broadest.
+    rank: (n,) what each line is worth, from 0; a print has room for those of the highest rank.
+    white: (n,) bool: a light line on dark ground, along which hatching is left away.
+    breadth: (n,) how broad the thing itself is, pixels, where it is drawn as broad as it is (a pupil, a full stop);
+        0 for a line, which is as broad as the pen draws it. A thing with breadth may have but one point: a spot.
+
+    One list serves every size on paper: the rank says what to leave out.
+    """
+
+    width: int
+    height: int
+    points: Floats = field(default_factory=lambda: np.zeros((0, 2)))
+    first: Ints = field(default_factory=lambda: np.zeros(1, np.int64))
+    weight: Floats = field(default_factory=lambda: np.zeros(0))
+    rank: Floats = field(default_factory=lambda: np.zeros(0))
+    white: npt.NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, np.bool_))
+    breadth: Floats = field(default_factory=lambda: np.zeros(0))
+
+    def __len__(self) -> int:
+        return len(self.rank)
+
+    def __getitem__(self, i: int) -> Floats:
+        """Points (k, 2) of line i."""
+        return self.points[self.first[i] : self.first[i + 1]]
+
+    def chosen(self, which: Ints) -> Lines:
+        """These lines alone, in this order."""
+        sizes = np.diff(self.first)[which]
+        first = np.zeros(len(which) + 1, np.int64)
+        np.cumsum(sizes, out=first[1:])
+        at = np.repeat(self.first[:-1][which] - first[:-1], sizes) + np.arange(first[-1])
+        return Lines(
+            self.width, self.height, self.points[at], first, self.weight[at], self.rank[which], self.white[which],
+            self.breadth[which],
+        )  # fmt: skip
+
+
+@dataclass(frozen=True, eq=False)
 class Strokes:
     """Pen strokes on paper: chains of cubic Bézier segments, in points (1/72 inch).
 

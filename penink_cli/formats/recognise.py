@@ -19,6 +19,7 @@ _NAMES = {
     "photo": "a photograph",
     "strokes": "strokes",
     "edges": "an edge list",
+    "lines": "telling lines",
     "texture": "a texture",
     "illustration": "an illustration",
     "svg": "an SVG drawing",

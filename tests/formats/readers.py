@@ -32,6 +32,12 @@ def _edges(data: bytes) -> Any:
     return found
 
 
+def _lines(data: bytes) -> Any:
+    from penink_cli.formats import lines
+
+    return lines.read(io.BytesIO(data), SOURCE)
+
+
 def _strokes(data: bytes) -> Any:
     from penink_cli.formats import strokes
 
@@ -92,6 +98,7 @@ READERS: dict[str, Callable[[bytes], Any]] = {
     "pgm": _pgm,
     "photo": _photo,
     "edges": _edges,
+    "lines": _lines,
     "strokes": _strokes,
     "texture": _texture,
     "illustration": _illustration,

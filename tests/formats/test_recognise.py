@@ -9,7 +9,7 @@ import re
 import pytest
 
 from penink_cli.errors import PeninkError
-from penink_cli.formats import edge_list, illustration, pgm, photo, recognise, strokes, svg_texture, texture
+from penink_cli.formats import edge_list, illustration, lines, pgm, photo, recognise, strokes, svg_texture, texture
 from penink_cli.main import SUBCOMMANDS
 
 
@@ -23,6 +23,7 @@ FILES = {
     "photo": b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR\xff\xfe",
     "strokes": STROKES,
     "edges": manifest("edges", vertices=[], edges=[]),
+    "lines": manifest("lines", lines=[]),
     "texture": manifest("texture", name="x", strokes=[]),
     "illustration": b"PK\x03\x04\x14\0\0\0\xff",
     "svg": b'<?xml version="1.0"?>\n<svg xmlns="http://www.w3.org/2000/svg"/>\n',
@@ -34,6 +35,7 @@ READERS = {
     "photo": lambda data: photo.read_grey(io.BytesIO(data), "f", 100),
     "strokes": lambda data: strokes.read(io.BytesIO(data), "f"),
     "edges": lambda data: edge_list.read(io.BytesIO(data), "f"),
+    "lines": lambda data: lines.read(io.BytesIO(data), "f"),
     "texture": lambda data: texture.read(io.BytesIO(data), "f"),
     "illustration": lambda data: illustration.read(data, "f", lambda _: b"", lambda _: None, 100),
     "svg": lambda data: svg_texture.read(io.BytesIO(data), "f", "name"),

@@ -14,6 +14,11 @@ from tests.faults.calls import encoded, strokes_text
 
 IMAGE = GreyImage((37 * np.arange(20) % 256).astype(np.uint8).reshape(4, 5))
 EDGES = EdgeList(5, 4, np.array([[1, 1], [2, 1.5], [3, 3]]), np.array([[0, 1], [1, 2]]), np.array([0.5, 1]))
+LINES = {
+    "format": "penink-lines", "version": 1, "width": 5, "height": 4, "lines": [
+        {"points": [[1, 1], [2.5, 3]], "weight": [0, 0.5], "rank": 1.5, "white": True},
+        {"points": [[2, 2]], "weight": [1], "rank": 1, "breadth": 2}],
+}  # fmt: skip
 TEXTURE = {
     "format": "penink-texture", "version": 1, "name": "t", "width": 9, "height": 9, "whole": False,
     "strokes": [{"priority": 0, "width": 0.4, "points": [[0, 8], [3, 8], [6, 9], [9, 9]]}],
@@ -42,6 +47,8 @@ def seeds(reader: str) -> Iterator[bytes]:
     if reader == "edges":
         yield encoded(edge_list.write, EDGES)
         yield json.dumps(json.loads(encoded(edge_list.write, EDGES)), indent=1, sort_keys=True).encode()
+    if reader == "lines":
+        yield json.dumps(LINES).encode()
     if reader == "strokes":
         yield strokes_text(9, 9, (0.5, [[1, 1], [2, 2.5], [-3, 3], [4, 4]]), (1, [[5, 5]]))
         yield b'{"seed":1,"layer":"\\u00e9","version":1,"format":"penink-strokes","height":1e1,"width":9}\r\n'
