@@ -125,6 +125,21 @@ class Lines:
 
 
 @dataclass(frozen=True, eq=False)
+class Directions:
+    """A line field: at every place the angle θ, modulo 180°, that strokes are to run at, and how sure that is.
+
+    θ is measured from x towards y (clockwise on paper). The samples fill the image frame, as those of a grey image do.
+
+    cos2, sin2: (h, w) cos 2θ and sin 2θ, a unit vector in each place; both 0 where no direction is known.
+    confidence: (h, w), 0 nothing is known … 1 the form says so.
+    """
+
+    cos2: npt.NDArray[np.floating]
+    sin2: npt.NDArray[np.floating]
+    confidence: npt.NDArray[np.floating]
+
+
+@dataclass(frozen=True, eq=False)
 class Strokes:
     """Pen strokes on paper: chains of cubic Bézier segments, in points (1/72 inch).
 

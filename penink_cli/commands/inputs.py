@@ -12,7 +12,7 @@ from penink_cli.errors import FormatError, LimitError, PeninkError
 from penink_cli.options import warn
 
 if TYPE_CHECKING:
-    from penink_cli.model import ColourImage, EdgeList, GreyImage, Illustration
+    from penink_cli.model import ColourImage, Directions, EdgeList, GreyImage, Illustration
 
 MAX_MEMBER = 1 << 28  # bytes of a file that a manifest names
 
@@ -58,15 +58,39 @@ def read_edges(path: str | None, max_pixels: int = 0) -> EdgeList | None:
     return edges
 
 
+def read_directions(path: str | None, width: int, height: int, max_pixels: int) -> Directions | None:
+    """A direction field for a picture of width × height pixels; None where no file is given.
+
+    Raises FormatError where no resizing, rounded to whole samples, leads from the one to the other.
+    """
+    if path is None:
+        return None
+    from penink_cli.formats import directions
+
+    source = streams.source_name(path)
+    with streams.reading(path) as stream:
+        field = directions.read(stream, source, max_pixels)
+    rows, columns = field.cos2.shape
+    if not _same_shape(columns, rows, width, height):
+        picture = f"the picture has {width} x {height} pixels, which is another shape"
+        raise FormatError(f"a field of {columns} x {rows} samples; {picture}", source)
+    return field
+
+
+def _same_shape(columns: int, rows: int, width: int, height: int) -> bool:
+    """Whether some resizing, rounded to whole numbers on either side, leads from the one size to the other."""
+    least = max((columns - 1) / width, (rows - 1) / height)
+    most = min((columns + 1) / width, (rows + 1) / height)
+    return least <= most
+
+
 def warn_of_another_shape(edges: EdgeList, photo: GreyImage, name: str = "this") -> None:
     """Warn where no resizing, rounded to whole pixels, leads from the edges' frame to the photo.
 
     The photo may be larger or smaller than the one the edges were found in, but hardly of another shape.
     """
     height, width = photo.values.shape
-    least = max((width - 1) / edges.width, (height - 1) / edges.height)
-    most = min((width + 1) / edges.width, (height + 1) / edges.height)
-    if least > most:
+    if not _same_shape(width, height, edges.width, edges.height):
         frame = f"{edges.width} x {edges.height}"
         warn(f"the edges are of a picture of {frame} pixels, and {name} of {width} x {height} has another shape")
 

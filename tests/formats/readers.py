@@ -24,6 +24,12 @@ def _photo(data: bytes) -> Any:
     return photo.read_grey(io.BytesIO(data), SOURCE, MAX_PIXELS)
 
 
+def _directions(data: bytes) -> Any:
+    from penink_cli.formats import directions
+
+    return directions.read(io.BytesIO(data), SOURCE, MAX_PIXELS)
+
+
 def _edges(data: bytes) -> Any:
     from penink_cli.formats import edge_list
 
@@ -99,6 +105,7 @@ READERS: dict[str, Callable[[bytes], Any]] = {
     "photo": _photo,
     "edges": _edges,
     "lines": _lines,
+    "directions": _directions,
     "strokes": _strokes,
     "texture": _texture,
     "illustration": _illustration,

@@ -8,8 +8,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from penink_cli.formats import archive, compact, edge_list, pgm
-from penink_cli.model import EdgeList, GreyImage
+from penink_cli.formats import archive, compact, directions, edge_list, pgm
+from penink_cli.model import Directions, EdgeList, GreyImage
 from tests.faults.calls import encoded, strokes_text
 
 IMAGE = GreyImage((37 * np.arange(20) % 256).astype(np.uint8).reshape(4, 5))
@@ -44,6 +44,8 @@ def seeds(reader: str) -> Iterator[bytes]:
             out = io.BytesIO()
             (picture.convert("RGB") if kind == "JPEG" else picture).save(out, kind)
             yield out.getvalue()
+    if reader == "directions":
+        yield encoded(directions.write, Directions(np.full((2, 3), 0.6), np.full((2, 3), -0.8), np.full((2, 3), 0.5)))
     if reader == "edges":
         yield encoded(edge_list.write, EDGES)
         yield json.dumps(json.loads(encoded(edge_list.write, EDGES)), indent=1, sort_keys=True).encode()

@@ -1,0 +1,1 @@
+"""The directions that strokes follow: a line field found in a photograph, and read at any size."""

@@ -1,0 +1,61 @@
+"""Reading a direction field at the size at hand: plane by plane, by the same reconstruction as the grey is enlarged by.
+
+The field is one function over the image frame, sharp across discontinuity edges, and reading it is taking its values
+at the output's centres: a small drawing and a poster find the same direction at the same place.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from penink_cli.model import Directions, EdgeList
+from penink_cli.reconstruction.enlarge import Window, check_window, reconstruct
+
+NOTHING = 1e-6  # a vector shorter than this has no direction
+
+
+def at_size(
+    directions: Directions,
+    edges: EdgeList | None,
+    rows: int,
+    columns: int,
+    threads: int | None = None,
+    window: Window | None = None,
+) -> Directions:
+    """The field at the centres of rows × columns pixels that fill the frame: unit vectors, float32.
+
+    Where neighbours disagree so much that their mean is a short vector, the confidence is as much less; where
+    nothing is left of it, the direction is that of x and the confidence 0.
+
+    edges: the arrangement of the picture, across which nothing is mixed; None for none.
+    window: x, y, width, height of the pixels wanted, all unless given. No value depends on it, nor on threads.
+    """
+    x, y, width, height = check_window(window, columns, rows)
+    h, w = directions.cos2.shape
+    # Below the field's own grid the reconstruction would widen its kernels, and turn the field with the size: read at
+    # an odd multiple of the size instead, one pixel of which lies at each of the centres wanted.
+    down, across = _odd(h, rows), _odd(w, columns)
+    finer = x * across, y * down, width * across, height * down
+
+    def plane(samples: npt.NDArray[np.floating]) -> npt.NDArray[np.float64]:
+        found = reconstruct(
+            samples.astype(np.float64), edges, columns * across, rows * down, window=finer, threads=threads
+        )
+        return found[down // 2 :: down, across // 2 :: across]
+
+    cos2, sin2 = plane(directions.cos2), plane(directions.sin2)
+    length = np.sqrt(cos2 * cos2 + sin2 * sin2)
+    known = length > NOTHING
+    divisor = np.where(known, length, 1.0)
+    confidence = np.clip(plane(directions.confidence), 0, 1) * np.where(known, np.minimum(length, 1.0), 0.0)
+    return Directions(
+        np.where(known, cos2 / divisor, 1.0).astype(np.float32),
+        np.where(known, sin2 / divisor, 0.0).astype(np.float32),
+        confidence.astype(np.float32),
+    )
+
+
+def _odd(samples: int, pixels: int) -> int:
+    """The least odd number of which so many pixels are no fewer than the samples."""
+    return -(-samples // pixels) // 2 * 2 + 1
