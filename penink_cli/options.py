@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+import functools
 import math
 import re
-from collections.abc import Callable
-from typing import Any, TypeVar
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 import click
 
+from penink_cli import streams
 from penink_cli.errors import ParameterError, in_quotes, printable
 from penink_cli.units import parse_length
+
+if TYPE_CHECKING:
+    from click.shell_completion import CompletionItem
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -118,6 +123,59 @@ WINDOW = Window()
 POSITIVE = Finite(above=0)
 
 
+class OutputFile(click.Path):
+    """A file to be written; every other path that a subcommand takes is read."""
+
+    def __init__(self) -> None:
+        super().__init__(allow_dash=True)
+
+
+def is_file(name: str) -> bool:
+    """Whether what stands for a shipped thing or a file is a file: it has a dot or a slash in it, or is ``-``."""
+    return name == "-" or "/" in name or "." in name
+
+
+class NameOrFile(click.Path):
+    """One of the things that come with the program, by its name, or a file of that kind; shells complete both."""
+
+    def __init__(self, names: Callable[[], Iterable[str]]):
+        super().__init__(allow_dash=True)
+        self.names = names
+
+    def shell_complete(self, ctx: click.Context, param: click.Parameter, incomplete: str) -> list[CompletionItem]:
+        """The names that begin so, and files: bash offers those where no name does."""
+        from click.shell_completion import CompletionItem
+
+        found = [CompletionItem(name) for name in self.names() if name.startswith(incomplete)]
+        return [CompletionItem(incomplete, type="file"), *found]
+
+
+def _keeping_inputs(function: F) -> F:
+    """The subcommand, which refuses to overwrite what it reads before it reads anything."""
+
+    @functools.wraps(function)
+    def checked(*arguments: Any, **values: Any) -> Any:
+        context = click.get_current_context()
+        outputs, inputs = [], []
+        for parameter in context.command.params:
+            if not isinstance(parameter.type, click.Path):
+                continue
+            value = context.params.get(parameter.name or "")
+            paths = list(value) if isinstance(value, tuple) else [value]
+            if isinstance(parameter.type, NameOrFile):
+                inputs += [path for path in paths if path is not None and is_file(path)]
+            elif isinstance(parameter.type, OutputFile):
+                outputs += paths
+            elif isinstance(parameter, click.Argument):
+                inputs += paths or [None]  # no FILE is standard input
+            else:
+                inputs += [path for path in paths if path is not None]
+        streams.keep_inputs(outputs, inputs)
+        return function(*arguments, **values)
+
+    return cast(F, checked)
+
+
 def filter_options(function: F) -> F:
     """What every filter has: FILE, -o, --max-pixels, --quiet, -h.
 
@@ -133,7 +191,12 @@ def filter_options(function: F) -> F:
 
 
 def output_options(function: F) -> F:
-    """-o, --max-pixels, --quiet, -h: for a subcommand whose inputs are its own affair."""
+    """-o, --max-pixels, --quiet, -h: for a subcommand whose inputs are its own affair.
+
+    Its files are of click's type Path, but for those it writes, which are of `OutputFile`: by that it is known
+    which must not be the same.
+    """
+    function = _keeping_inputs(function)
     for decorate in (
         click.help_option("-h", "--help"),
         click.option("-q", "--quiet", is_flag=True, help="No progress bar."),
@@ -147,7 +210,7 @@ def output_options(function: F) -> F:
         click.option(
             "-o",
             "--output",
-            type=click.Path(allow_dash=True),
+            type=OutputFile(),
             metavar="FILE",
             help="Write there, whole or not at all, instead of to standard output.",
         ),

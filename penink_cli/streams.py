@@ -22,11 +22,11 @@ import signal
 import stat
 import sys
 import threading
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, BinaryIO, NoReturn
 
-from penink_cli.errors import StreamError
+from penink_cli.errors import StreamError, printable
 
 if TYPE_CHECKING:
     from _typeshed import ReadableBuffer, WriteableBuffer
@@ -41,6 +41,7 @@ _TEMPORARY = re.compile(r"\.penink-[0-9a-f]{16}\.tmp", re.ASCII)
 _guard = threading.Lock()  # held while a temporary file comes into being, and for ever once a signal has come
 _temporaries: set[str] = set()
 _closed: set[int] = set()  # descriptors 0-2 that the caller had closed
+_targets: dict[tuple[int, int], str] = {}  # device and inode of each file that this call replaces: its name
 
 
 def _why(error: OSError) -> str:
@@ -50,6 +51,48 @@ def _why(error: OSError) -> str:
 def source_name(path: str | None) -> str:
     """What error lines call this input: its path, or ``<stdin>``."""
     return STDIN if path is None or path == "-" else path
+
+
+# ---------------------------------------------------------------------------- no output over an input
+
+
+def keep_inputs(outputs: Iterable[str | None], inputs: Iterable[str | None]) -> None:
+    """Refuse a call whose output is one of its inputs, under whatever name, link or redirection.
+
+    Nothing has been opened yet. ``None`` and ``-`` are standard output and standard input. What else the call
+    comes to read, such as the members that a manifest names, is refused by `reading`. Regular files alone can be
+    overwritten: a terminal or ``/dev/null`` may be both.
+
+    Raises StreamError, which names both.
+    """
+    _targets.clear()
+    for path in outputs:
+        status = _status(path, 1)
+        if status is not None and stat.S_ISREG(status.st_mode):
+            _targets[status.st_dev, status.st_ino] = STDOUT if path in (None, "-") else str(path)
+    for path in inputs if _targets else ():
+        status = _status(path, 0)
+        if status is not None:
+            _keep(status, source_name(path))
+
+
+def _keep(status: os.stat_result, source: str) -> None:
+    """Refuse an input that the call is to overwrite."""
+    name = _targets.get((status.st_dev, status.st_ino))
+    if name is not None:
+        raise StreamError(f"is the same file as the input {printable(source)}, which it would overwrite", name)
+
+
+def _status(path: str | None, standard: int) -> os.stat_result | None:
+    """What a path, or a standard descriptor, leads to; None where that is nothing yet."""
+    if path is None or path == "-":
+        descriptor: int | None = standard
+    else:
+        descriptor = _own_descriptor(path)
+    try:
+        return os.stat(str(path)) if descriptor is None else os.fstat(descriptor)
+    except (OSError, ValueError):
+        return None
 
 
 # ---------------------------------------------------------------------------- reading
@@ -101,6 +144,7 @@ def reading(path: str | None) -> Iterator[BinaryIO]:
             why = _why(error) if isinstance(error, OSError) else str(error)
             raise StreamError(why, source) from error
     with raw, io.BufferedReader(raw, BUFFER) as stream:
+        _keep(os.fstat(raw.fileno()), source)
         yield stream
 
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from penink_cli.errors import ParameterError, printable
+from penink_cli.options import NameOrFile, is_file
 from penink_cli.streams import reading, source_name
 
 if TYPE_CHECKING:
@@ -20,15 +21,6 @@ F = TypeVar("F", bound=Callable[..., Any])
 
 ENDING = ".texture.json.gz"
 
-texture_option = click.option(
-    "-t",
-    "--texture",
-    "texture_name",
-    default="crosshatch",
-    show_default=True,
-    metavar="NAME|FILE",
-    help="A shipped texture (see penink texture list) or a texture file.",
-)
 
 
 def shipped() -> list[str]:
@@ -37,11 +29,25 @@ def shipped() -> list[str]:
     return sorted(f.name.removesuffix(ENDING) for f in tiles.iterdir() if f.name.endswith(ENDING))
 
 
+TEXTURE = NameOrFile(shipped)
+
+texture_option = click.option(
+    "-t",
+    "--texture",
+    "texture_name",
+    type=TEXTURE,
+    default="crosshatch",
+    show_default=True,
+    metavar="NAME|FILE",
+    help="A shipped texture (see penink texture list) or a texture file.",
+)
+
+
 def find_texture(name: str) -> Texture:
     """The texture of that name, or in that file (a name with a dot or a slash in it, or ``-``)."""
     from penink_cli.formats import texture as texture_format
 
-    if name == "-" or "/" in name or "." in name:
+    if is_file(name):
         with reading(name) as stream:
             return texture_format.read(stream, source_name(name))
     if name not in shipped():

@@ -10,7 +10,7 @@ import click
 from penink_cli.errors import ParameterError
 from penink_cli.options import LENGTH, DeviceDpi, Finite, Length, output_options, warn
 from penink_cli.streams import reading, source_name, writing
-from penink_cli.texture_options import find_texture, shipped
+from penink_cli.texture_options import TEXTURE, find_texture, shipped
 from penink_cli.textures.kinds import KINDS
 
 if TYPE_CHECKING:
@@ -66,7 +66,7 @@ def describe(found: Texture, device_dpi: float | None) -> str:
 
 
 @texture.command()
-@click.argument("name", metavar="NAME|FILE")
+@click.argument("name", metavar="NAME|FILE", type=TEXTURE)
 @click.option("--json", "as_file", is_flag=True, help="Write the texture file itself.")
 @click.option("--device-dpi", type=DeviceDpi(), default="600", show_default=True, metavar="N|none")
 @output_options

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import errno
 import os
-import shutil
 import signal
 import stat
 import subprocess
@@ -68,16 +67,6 @@ def test_a_file_of_that_name_holds_the_same_and_nothing_else_is_left(name, serve
     assert (done.status, done.out, done.err) == (0, b"", b"")
     assert (tmp_path / "out").read_bytes() == expected[name] and os.listdir(tmp_path) == ["out"]
     assert stat.S_IMODE((tmp_path / "out").stat().st_mode) == 0o640
-
-
-@readers
-def test_the_output_may_be_the_input(name, server, inputs, expected, tmp_path):
-    shutil.copytree(inputs, tmp_path, dirs_exist_ok=True)
-    both = tmp_path / "both"
-    (tmp_path / CALLS[name].reads).rename(both)
-    done = server.run(*arguments(name, inputs, by_name=False), both, "-o", both)
-    assert (done.status, done.err) == (0, b"")
-    assert both.read_bytes() == expected[name] and len(os.listdir(tmp_path)) == len(os.listdir(inputs))
 
 
 @every

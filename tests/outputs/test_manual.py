@@ -108,6 +108,8 @@ def test_a_man_page_holds_the_whole_help():
         (["penink", "to-"], {"to-ps", "to-svg", "to-pdf", "to-pgm", "to-png"}),
         (["penink", "to-svg", "--or"], {"--order"}),
         (["penink", "completion", "b"], {"bash"}),
+        (["penink", "blast", "--texture", "crossh"], {"crosshatch"}),
+        (["penink", "texture", "show", "st"], {"stipple"}),
     ],
 )
 def test_completion(place, words, expected):
