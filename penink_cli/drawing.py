@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import io
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
 from penink_cli.errors import ParameterError
-from penink_cli.formats import strokes as strokes_format
 from penink_cli.model import EdgeList, Floats, GreyImage, OutlineChoice, Strokes, Texture
 
 PIXELS_PER_PT = 2.0  # of the grey that is blasted: half the distance between the closest strokes
@@ -67,10 +66,11 @@ def represented(
 
 
 def outlined(
-    edges: EdgeList, width_pt: float, height_pt: float, choice: OutlineChoice, ink: Strokes | None = None
-) -> Strokes:
+    edges: EdgeList, width_pt: float, height_pt: float, choice: OutlineChoice, ink: Strokes | None = None,
+    device_dpi: float | None = None,
+) -> Strokes:  # fmt: skip
     """Outline strokes, as a strokes file holds them."""
-    return as_written(outline_strokes(edges, width_pt, height_pt, choice, ink))
+    return outline_strokes(edges, width_pt, height_pt, choice, ink, device_dpi).rounded()
 
 
 def blasted(
@@ -81,18 +81,17 @@ def blasted(
     from penink_cli.blasting.blast import blast
 
     rows, columns = grey.values.shape
-    return as_written(
-        blast(
-            tone_curve(grey, gamma), width_pt, width_pt * rows / columns, edges, texture, seed=seed, pen_pt=pen_pt,
-            device_dpi=device_dpi, outlines=ink, threads=threads,
-        )
-    )  # fmt: skip
+    return blast(
+        tone_curve(grey, gamma), width_pt, width_pt * rows / columns, edges, texture, seed=seed, pen_pt=pen_pt,
+        device_dpi=device_dpi, outlines=ink, threads=threads,
+    ).rounded()  # fmt: skip
 
 
 def outline_strokes(
-    edges: EdgeList, width_pt: float, height_pt: float, choice: OutlineChoice, ink: Strokes | None = None
-) -> Strokes:
-    """Outline strokes of the edges chosen; ink is on the sheet already, and not to be doubled."""
+    edges: EdgeList, width_pt: float, height_pt: float, choice: OutlineChoice, ink: Strokes | None = None,
+    device_dpi: float | None = None,
+) -> Strokes:  # fmt: skip
+    """Outline strokes of the edges chosen, for that printer; ink is on the sheet already, and not to be doubled."""
     from penink_cli.blasting import outlines
 
     around = None
@@ -100,21 +99,5 @@ def outline_strokes(
         from penink_cli.arrangement import regions
 
         around = regions.edges_around(edges, np.array(choice.regions, np.float64))
-    return outlines.outline(edges, width_pt, height_pt, choice, around, ink)
-
-
-def as_written(strokes: Strokes) -> Strokes:
-    """The strokes as a strokes file holds them, to its decimals: what the next filter of a chain would read."""
-    out = io.BytesIO()
-    strokes_format.write(out, strokes)
-    out.seek(0)
-    return strokes_format.read(out, "")
-
-
-def joined(parts: Sequence[Strokes]) -> Strokes:
-    """Several lists of strokes as one, in their order, on the first one's sheet."""
-    counts = np.concatenate([np.diff(part.first) for part in parts])
-    first = np.zeros(len(counts) + 1, np.int64)
-    np.cumsum(counts, out=first[1:])
-    points = np.concatenate([part.points for part in parts])
-    return Strokes(parts[0].width, parts[0].height, points, first, np.concatenate([part.widths for part in parts]))
+    drawn = outlines.outline(edges, width_pt, height_pt, choice, around, ink)
+    return replace(drawn, device_dpi=device_dpi)

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
-from penink_cli.drawing import Advance, as_written, enlarged, grey_size, joined, outlined, tone_curve
+from penink_cli.drawing import Advance, enlarged, grey_size, outlined, tone_curve
 from penink_cli.model import Floats, GreyImage, Illustration, Strokes
 
 LEAST_TONE = 1 / 255  # below it an overlay is paper
@@ -38,10 +40,10 @@ def layer_strokes(
     size = grey_size(width_pt, illustration.height / illustration.width)
     outlines: list[Strokes] = []
     for layer in illustration.layers:
-        drawn = Strokes(width_pt, height_pt)
+        drawn = Strokes(width_pt, height_pt, device_dpi=device_dpi)
         if layer.outline is not None and layer.edges is not None:
-            before = joined(outlines) if outlines else None
-            drawn = outlined(layer.edges, width_pt, height_pt, layer.outline, before)
+            before = Strokes.joined(outlines) if outlines else None
+            drawn = outlined(layer.edges, width_pt, height_pt, layer.outline, before, device_dpi)
         outlines.append(drawn)
     greys = [enlarged(layer.samples, layer.edges, size, threads) for layer in illustration.layers]
     best: tuple[int, list[Strokes]] | None = None
@@ -57,7 +59,7 @@ def layer_strokes(
             break
         from penink_cli.blasting.blast import left_over
 
-        error = left_over(total, width_pt, height_pt, joined([*outlines, *hatched]), device_dpi, threads)
+        error = left_over(total, width_pt, height_pt, Strokes.joined([*outlines, *hatched]), device_dpi, threads)
         # summed as whole numbers: the order of the sum is not the same on every machine
         squares = int((np.rint(error * 4096).astype(np.int64) ** 2).sum())
         if best is None or squares < best[0]:
@@ -82,7 +84,7 @@ def _hatched(
     """The hatching of each layer, and the tone (h, w) of them all; extra: (h, w) what is wanted besides."""
     from penink_cli.blasting.blast import blast
 
-    ink = joined(outlines)
+    ink = Strokes.joined(outlines)
     total: Floats | None = None
     result = []
     by_device = _hatched_as_by_a_device(illustration, width_pt, height_pt, device_dpi, outlines, threads)
@@ -95,15 +97,15 @@ def _hatched(
         if i > 0 or extra is not None:
             wanted = np.where(tone >= LEAST_TONE, wanted, 0.0)
         if layer.rule == "threshold":
-            hatched = by_device[i]
+            hatched = replace(by_device[i], device_dpi=device_dpi)
         else:
             hatched = blast(
                 wanted, width_pt, height_pt, layer.edges, layer.texture, seed=seed + layer.seed + i,
                 pen_pt=layer.pen_pt, device_dpi=device_dpi, rule=layer.rule, outlines=ink if len(ink) else None,
                 threads=threads,
             )  # fmt: skip
-        hatched = as_written(hatched)
-        ink = joined([ink, hatched])
+        hatched = hatched.rounded()
+        ink = Strokes.joined([ink, hatched])
         result.append(hatched)
         advance(1)
     assert total is not None

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -54,7 +54,7 @@ def blast(
     if rule == "threshold":
         strokes = blast_by_threshold(tone, width_pt, height_pt, edges, texture, pen_pt, device_dpi, outlines)
         tick()
-        return replace(strokes, texture=texture.name, seed=seed)
+        return replace(strokes, texture=texture.name, seed=seed, device_dpi=device_dpi)
     gain = 72.0 / device_dpi if device_dpi else 0.0
     sheet = Sheet(tone, width_pt, height_pt, gain, threads or 1)
     if outlines is not None:
@@ -64,13 +64,13 @@ def blast(
     else:
         enters = tile.thresholds(texture, gain)
         parts = tile.blast_tile(sheet, texture, edges, enters, seed, rule == "strict", pen_pt, tick)
-        strokes = hatching.join(parts, width_pt, height_pt)
+        strokes = Strokes.joined([Strokes(width_pt, height_pt), *parts])
         if rule == "best" and pen_pt is None and len(strokes):
             sheet.clear()  # the best round may not have been the last
             hatching.paint(sheet, strokes)
             strokes = hatching.press(sheet, strokes, seed, tile.crowd(sheet, texture))
     tick()
-    return replace(strokes, texture=texture.name, seed=seed)
+    return replace(strokes, texture=texture.name, seed=seed, device_dpi=device_dpi)
 
 
 def left_over(
@@ -80,14 +80,6 @@ def left_over(
     sheet = Sheet(tone, width_pt, height_pt, 72.0 / device_dpi if device_dpi else 0.0, threads or 1)
     hatching.draw_first(sheet, strokes)
     return resample(sheet.spread(sheet.error()).astype(np.float64), *tone.shape)
-
-
-def batches(strokes: Strokes, size: int = 4096) -> Iterator[Strokes]:
-    """The strokes, so many at a time, to be written as they come."""
-    for start in range(0, len(strokes), size):
-        first = strokes.first[start : start + size + 1]
-        points = strokes.points[first[0] : first[-1]]
-        yield replace(strokes, points=points, first=first - first[0], widths=strokes.widths[start : start + size])
 
 
 def too_dark(tone: Floats, darkest: float) -> float:

@@ -12,6 +12,7 @@ to its neighbours on all sides. So strokes are handed out when all of them are d
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
@@ -46,16 +47,6 @@ RIM_TONE, RIM_CAUTION = 0.85, 4.0
 FINE_ROW_PT, FINE_MOVES = 1.5, (-0.33, 0.33, 0.0)
 #: How far a hand's pressure widens or narrows a stroke, and in how many rounds that is found.
 PRESSURE, PRESSES = 0.22, 3
-
-
-def join(parts: list[Strokes], width_pt: float, height_pt: float) -> Strokes:
-    """All strokes of the parts, in order, on one sheet."""
-    parts = [part for part in parts if len(part)]
-    if not parts:
-        return Strokes(width_pt, height_pt)
-    first = curves.starts(np.concatenate([np.diff(part.first) for part in parts]))
-    points = np.concatenate([part.points for part in parts])
-    return Strokes(width_pt, height_pt, points, first, np.concatenate([part.widths for part in parts]))
 
 
 def hatch_sheet(
@@ -117,12 +108,12 @@ def hatch_sheet(
         density = density + np.float32(SWEEP_GAIN) * error
     assert best is not None
     tick()
-    drawn = join(best[2], sheet.width, sheet.height)
+    drawn = Strokes.joined([Strokes(sheet.width, sheet.height), *best[2]])
     if best[1] != ROUNDS - 1:
         sheet.clear()
         paint(sheet, drawn)
     fine = fine_strokes(sheet, layers, finest, gain_pt, borders, seed)
-    drawn = join([drawn, *fine], sheet.width, sheet.height)
+    drawn = Strokes.joined([drawn, *fine])
     if pen_pt is None and len(drawn):
         drawn = press(sheet, drawn, seed, crowd)
     return drawn
@@ -189,4 +180,4 @@ def press(sheet: Sheet, strokes: Strokes, seed: int, crowd: Cells) -> Strokes:
         lines, strokes.widths, strokes.widths * (1 - pressure), strokes.widths * (1 + pressure), order, PRESSES
     )
     widths = np.maximum(np.round(widths, 2), 0.01)
-    return Strokes(strokes.width, strokes.height, strokes.points, strokes.first, widths)
+    return replace(strokes, widths=widths)

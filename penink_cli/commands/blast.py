@@ -100,10 +100,11 @@ def blast(
     \b
     penink blast --texture crosshatch --width 4in photo.pgm | penink to-ps -o photo.ps
     """
-    from penink_cli.blasting.blast import TICKS, batches
+    from penink_cli.blasting.blast import TICKS
     from penink_cli.blasting.blast import blast as blast_tone
-    from penink_cli.drawing import joined, tone_curve
+    from penink_cli.drawing import tone_curve
     from penink_cli.formats import strokes as strokes_format
+    from penink_cli.model import Strokes
 
     if (width is None) == (dpi is None):
         raise click.UsageError("give one of --width and --dpi")
@@ -130,7 +131,7 @@ def blast(
             pen_pt=pen,
             device_dpi=device_dpi,
             rule=rule,
-            outlines=joined(ink) if ink else None,
+            outlines=Strokes.joined(ink) if ink else None,
             threads=threads or processors(),
             tick=lambda: more(1),
         )
@@ -138,9 +139,7 @@ def blast(
         pens = f"{strokes.widths.min():.2f} to {strokes.widths.max():.2f} pt"
         reporter(verbose)(f"{len(strokes)} strokes of {texture.name}, {pens} wide, on {width_pt:g} x {height_pt:g} pt")
     with writing(output, binary=False) as out:
-        writer = strokes_format.Writer(out, width_pt, height_pt, texture=strokes.texture, seed=seed)
-        for batch in batches(strokes):
-            writer.add(batch)
+        strokes_format.write(out, strokes)
 
 
 def warnings(tone: Floats, texture: Texture, pen: float | None, device_dpi: float | None) -> list[str]:

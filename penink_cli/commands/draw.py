@@ -117,7 +117,7 @@ def draw(
             return
         for line in warnings(drawing.tone_curve(reduced, gamma), texture, pen, device_dpi):
             warn(line)
-        outlined = drawing.outlined(edges, width, height, choice) if choice else None
+        outlined = drawing.outlined(edges, width, height, choice, device_dpi=device_dpi) if choice else None
         grey = drawing.enlarged(reduced, edges, drawing.grey_size(width, rows / columns), threads)
         advance(1)
         hatched = drawing.blasted(
@@ -166,11 +166,11 @@ def _write_png(output: str | None, layers: Sequence[Strokes]) -> None:
 
 
 def _write_strokes(output: str | None, layers: Sequence[Strokes]) -> None:
-    from penink_cli.drawing import joined
     from penink_cli.formats import strokes
+    from penink_cli.model import Strokes
 
     with writing(output, binary=False) as out:
-        strokes.write(out, joined(layers))
+        strokes.write(out, Strokes.joined(layers))
 
 
 def _write_illustration(output: str | None, illustration: Illustration) -> None:
@@ -209,7 +209,8 @@ def _chain(
     pen = "" if options["pen"] is None else f" --pen {options['pen']!r}"
     blast = f"penink blast -e e.json --texture {shlex.quote(options['texture_name'])} {width}{pen}"
     blast += f" --gamma {options['gamma']!r} --seed {options['seed']}"
-    blast += f" --device-dpi {'none' if options['device_dpi'] is None else repr(options['device_dpi'])}"
+    device = f" --device-dpi {'none' if options['device_dpi'] is None else repr(options['device_dpi'])}"
+    blast += device
     lines = [f"penink detect-edges {photo} -o e.json"]
     samples = f"penink extract-samples -e e.json {photo} | penink reduce -e e.json {grid} --photo {photo}"
     if ending == ".penink":
@@ -219,7 +220,7 @@ def _chain(
     if choice:
         lines.append(
             f"penink outline {width}{pen} --min-strength {choice.min_strength} --min-length {choice.min_length:g}"
-            " e.json -o outlines.jsonl"
+            f"{device} e.json -o outlines.jsonl"
         )
         blast += " --ink outlines.jsonl"
         names += " outlines.jsonl"

@@ -8,7 +8,7 @@ import click
 
 from penink_cli.commands.inputs import read_edges
 from penink_cli.errors import in_quotes
-from penink_cli.options import LENGTH, Finite, filter_options
+from penink_cli.options import LENGTH, DeviceDpi, Finite, filter_options
 from penink_cli.streams import writing
 
 
@@ -41,6 +41,14 @@ class Point(click.ParamType):
     help="Width of a hand's strokes, which swell and thin a little.",
 )
 @click.option(
+    "--device-dpi",
+    type=DeviceDpi(),
+    default="600",
+    show_default=True,
+    metavar="N|none",
+    help="Resolution of the printer that the hatching beside them is for, as blast has it.",
+)
+@click.option(
     "--min-strength",
     type=Finite(0, 1),
     default=0.0,
@@ -61,6 +69,7 @@ def outline(
     width: float,
     pen: float | None,
     weight: float,
+    device_dpi: float | None,
     min_strength: float,
     min_length: float,
     regions: tuple[tuple[float, float], ...],
@@ -91,6 +100,6 @@ def outline(
         min_length=min_length,
         regions=regions,
     )
-    drawn = outline_strokes(edges, width, height, choice)
+    drawn = outline_strokes(edges, width, height, choice, device_dpi=device_dpi)
     with writing(output, binary=False) as out:
         strokes.write(out, drawn)

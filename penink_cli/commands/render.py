@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import click
@@ -62,9 +63,9 @@ def render(
     \b
     penink render keys.penink --width 24in --device-dpi 1200 | penink to-ps -o poster.eps
     """
-    from penink_cli.drawing import joined
     from penink_cli.formats import strokes
     from penink_cli.layering import layer_strokes, steps
+    from penink_cli.model import Strokes
     from penink_cli.progress import progress
 
     if width is not None and scale is not None:
@@ -78,12 +79,11 @@ def render(
         layers = layer_strokes(
             illustration, width_pt, device_dpi=device_dpi, seed=seed, threads=threads or processors(), advance=advance
         )
-    drawn = joined([part for i in which for part in layers[i]])
+    drawn = Strokes.joined([part for i in which for part in layers[i]])
     name = illustration.layers[which[0]].name if len(which) == 1 else None
     texture = illustration.layers[which[0]].texture.name if len(which) == 1 else None
     with writing(output, binary=False) as out:
-        writer = strokes.Writer(out, width_pt, height_pt, name, texture, seed)
-        writer.add(drawn)
+        strokes.write(out, replace(drawn, layer=name, texture=texture, seed=seed))
 
 
 def _number(illustration: Illustration, chosen: str) -> int:

@@ -179,6 +179,14 @@ def numbers(
     return at, filled
 
 
+@cython.ccall
+@cython.nogil
+@cython.exceptval(check=False)
+def agree(width: cython.double, mean: cython.double) -> cython.bint:
+    """Whether a stroke's width is the mean of its knots' widths, but for rounding and another kind of mean."""
+    return -0.0002 - 0.01 * mean <= width - mean <= 0.0002 + 0.01 * mean
+
+
 @cython.cfunc
 @cython.nogil
 @cython.exceptval(check=False)
@@ -188,10 +196,14 @@ def _stroke(
     limit: cython.double,
     points: cython.p_double,
     width: cython.p_double,
+    knots: cython.p_double,
     count: cython.p_longlong,
+    swells: cython.p_bint,
 ) -> cython.Py_ssize_t:
-    """Read one line, its newline included, the members in our order."""
+    """Read one line, its newline included, the members in our order; the width at each knot is filled in any case."""
     n: cython.longlong = 0
+    k: cython.longlong
+    total: cython.double = 0.0
     at = _literal(text, at, b"{")
     at = _literal(text, at, b'"width"')
     at = _literal(text, at, b":")
@@ -218,6 +230,27 @@ def _stroke(
     if n % 3 != 1:
         return REFUSED
     at = _literal(text, at, b"]")
+    if at < 0:
+        return REFUSED
+    at = _blank(text, at)
+    if text[at] == 44:  # ,
+        at = _literal(text, at + 1, b'"widths"')
+        at = _literal(text, at, b":")
+        at = _literal(text, at, b"[")
+        for k in range((n + 2) // 3):
+            if k > 0:
+                at = _literal(text, at, b",")
+            at = _within(text, at, limit, knots + k)
+            if at < 0 or knots[k] < 0.0:
+                return REFUSED
+            total += knots[k]
+        at = _literal(text, at, b"]")
+        if not agree(width[0], total / ((n + 2) // 3)):
+            return REFUSED
+        swells[0] = True
+    else:
+        for k in range((n + 2) // 3):
+            knots[k] = width[0]
     at = _literal(text, at, b"}")
     at = _literal(text, at, b"\n")
     count[0] = n
@@ -231,30 +264,34 @@ def strokes(
     points: cython.double[:, ::1],
     counts: cython.longlong[::1],
     widths: cython.double[::1],
-) -> tuple[int, int, int]:
+    knots: cython.double[::1],
+) -> tuple[int, int, int, bool]:
     """Read strokes' lines from `start` until the end or the first line that is not plain.
 
     text: whole lines; its last byte is a newline (which is what stops every inner loop).
     limit: the largest width and coordinate allowed.
-    points (≥ bytes / 6, 2), counts and widths (≥ bytes / 28) are filled from their beginning.
-    Returns where it stopped, the number of strokes and of points.
+    points (≥ bytes / 6, 2), counts and widths (≥ bytes / 28), and knots (≥ bytes / 6), the widths at all knots, are
+    filled from their beginning.
+    Returns where it stopped, the number of strokes and of points, and whether any stroke has widths at its knots.
     """
     at: cython.Py_ssize_t = start
     end: cython.Py_ssize_t = text.shape[0]
     read: cython.Py_ssize_t = 0
     used: cython.Py_ssize_t = 0
     following: cython.Py_ssize_t
+    swells: cython.bint = False
     if end == 0 or text[end - 1] != 10:
         raise ValueError("the text must end with a newline")
     with cython.nogil:
         while at < end:
             following = _stroke(
                 cython.address(text[0]), at, limit, cython.address(points[used, 0]),
-                cython.address(widths[read]), cython.address(counts[read]),
+                cython.address(widths[read]), cython.address(knots[(used + 2 * read) // 3]),
+                cython.address(counts[read]), cython.address(swells),
             )  # fmt: skip
             if following < 0:
                 break
             at = following
             used += cython.cast(cython.Py_ssize_t, counts[read])
             read += 1
-    return at, read, used
+    return at, read, used, swells

@@ -60,6 +60,7 @@ def put(
     points: cython.const[cython.double][:, ::1],
     first: cython.const[cython.longlong][::1],
     widths: cython.const[cython.double][::1],
+    knots: cython.const[cython.double][::1],
     start: cython.Py_ssize_t,
     stop: cython.Py_ssize_t,
     limit: cython.double,
@@ -67,13 +68,18 @@ def put(
 ) -> int:
     """Write strokes start … stop - 1 as lines into `out`; returns the number of bytes.
 
-    out: at least 48 bytes a stroke and 32 a point for limit ≤ 10^7.
-    Coordinates get 3 decimals, widths 4 and at least 0.0001.
+    knots: widths at the knots of all strokes; written of a stroke whose own are not all the same as written.
+        Empty where no stroke swells.
+    out: at least 64 bytes a stroke and 32 a point, 46 where strokes swell, for limit ≤ 10^7.
+    Coordinates get 3 decimals, widths 4; that of a stroke is at least 0.0001.
     Returns -1 - i for the first stroke i with a number that is not finite or beyond the limit.
     """
     at: cython.Py_ssize_t = 0
     i: cython.Py_ssize_t
     k: cython.Py_ssize_t
+    knot: cython.Py_ssize_t
+    last: cython.Py_ssize_t
+    swells: cython.bint
     whole: cython.longlong
     buffer: cython.p_uchar = cython.address(out[0])
     with cython.nogil:
@@ -99,5 +105,26 @@ def put(
                 at += 1
             if at < 0:
                 break
-            at = _put(buffer, at, b"]}\n")
+            buffer[at] = 93
+            at += 1
+            if knots.shape[0] > 0:
+                knot = (first[i] + 2 * i) // 3
+                last = (first[i + 1] + 2 * i + 2) // 3
+                swells = False
+                for k in range(knot, last):
+                    if not 0.0 <= knots[k] <= limit:
+                        at = -1 - i
+                        break
+                    swells = swells or _nearest(knots[k] * 10000.0) != _nearest(knots[knot] * 10000.0)
+                if at < 0:
+                    break
+                if swells:
+                    at = _put(buffer, at, b', "widths": [')
+                    for k in range(knot, last):
+                        if k > knot:
+                            at = _put(buffer, at, b", ")
+                        at = _fixed(buffer, at, _nearest(knots[k] * 10000.0), 4)
+                    buffer[at] = 93
+                    at += 1
+            at = _put(buffer, at, b"}\n")
     return at

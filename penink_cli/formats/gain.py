@@ -14,6 +14,7 @@ import numpy as np
 from penink_cli.model import Floats, Strokes
 
 STEP = 0.01  # points, to which changed widths are rounded: few pens, short files
+FINE_STEP = 0.001  # the same for strokes that swell, whose width would go in steps
 LEAST = 0.01
 
 
@@ -31,13 +32,16 @@ def gains(strokes: Strokes, dpi: float) -> Floats:
 
 def widened(strokes: Strokes, dpi: float) -> Strokes:
     """As wide as a device of this resolution would paint them."""
-    return _with(strokes, strokes.widths + gains(strokes, dpi))
+    return _with(strokes, gains(strokes, dpi))
 
 
 def narrowed(strokes: Strokes, dpi: float) -> Strokes:
     """So that a device of this resolution paints them as wide as they were."""
-    return _with(strokes, strokes.widths - gains(strokes, dpi))
+    return _with(strokes, -gains(strokes, dpi))
 
 
-def _with(strokes: Strokes, widths: Floats) -> Strokes:
-    return replace(strokes, widths=np.maximum(np.rint(widths / STEP) * STEP, LEAST))
+def _with(strokes: Strokes, more: Floats) -> Strokes:
+    if strokes.knot_widths is not None:
+        wider = strokes.knot_widths + np.repeat(more, np.diff(strokes.knots))
+        return strokes.swelling(np.maximum(np.rint(wider / FINE_STEP) * FINE_STEP, LEAST))
+    return replace(strokes, widths=np.maximum(np.rint((strokes.widths + more) / STEP) * STEP, LEAST))

@@ -5,9 +5,10 @@ The first line is the header, the sheet in points::
     {"format": "penink-strokes", "version": 1, "width": 288.000, "height": 192.000, "texture": "crosshatch", "seed": 0}
 
 and every further line a stroke, a chain of k cubic Bézier segments with 3k + 1 control
-points, or a dot with one::
+points, or a dot with one; a stroke that swells has the width at each of its k + 1 knots besides::
 
     {"width": 0.4000, "points": [[10.000, 20.000], [14.100, 20.300], [18.000, 20.300], [22.000, 20.000]]}
+    {"width": 0.3000, "points": [[1.000, 2.000], … [9.000, 2.000]], "widths": [0.2000, 0.4000]}
 
 x right, y down, from the sheet's top-left corner; strokes may reach over the sheet. Lines
 end at ``\\n`` and nowhere else; none is empty. No number is larger than 10⁷, no line longer
@@ -18,6 +19,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from collections.abc import Iterator
 from typing import Any, BinaryIO, Protocol
 
@@ -48,6 +50,8 @@ def _read(stream: BinaryIO) -> Strokes:
     points: list[np.ndarray] = []
     counts: list[np.ndarray] = []
     widths: list[np.ndarray] = []
+    knots: list[np.ndarray] = []
+    any_swells = False
     total = 0
     for text in _blocks(stream):
         start = 0
@@ -64,8 +68,11 @@ def _read(stream: BinaryIO) -> Strokes:
         block_points = np.empty(((len(text) - start) // 6 + 2, 2))
         block_counts = np.empty((len(text) - start) // 28 + 2, np.int64)
         block_widths = np.empty(len(block_counts))
+        block_knots = np.empty(len(block_points))
         while start < len(text):
-            start, strokes, used = _plain_json.strokes(text, start, LIMIT, block_points, block_counts, block_widths)
+            start, strokes, used, swells = _plain_json.strokes(
+                text, start, LIMIT, block_points, block_counts, block_widths, block_knots
+            )
             line_number += strokes
             total += used
             if total > MAX_POINTS:
@@ -73,13 +80,17 @@ def _read(stream: BinaryIO) -> Strokes:
             points.append(block_points[:used].copy())
             counts.append(block_counts[:strokes].copy())
             widths.append(block_widths[:strokes].copy())
+            knots.append(block_knots[: (used + 2 * strokes) // 3].copy())
+            any_swells |= swells
             if start < len(text):  # a line that is not plain: right in another way, or wrong
                 line_number += 1
                 end = text.index(b"\n", start)
-                width, control = _stroke(text[start:end], line_number)
+                width, control, at_knots = _stroke(text[start:end], line_number)
                 points.append(control)
                 counts.append(np.array([len(control)], np.int64))
                 widths.append(np.array([width]))
+                knots.append(np.full((len(control) + 2) // 3, width) if at_knots is None else at_knots)
+                any_swells |= at_knots is not None
                 start = end + 1
     if header is None:
         raise FormatError("empty; the first line of a strokes file is its header")
@@ -90,6 +101,7 @@ def _read(stream: BinaryIO) -> Strokes:
         points=np.concatenate(points) if points else np.zeros((0, 2)),
         first=first,
         widths=np.concatenate(widths) if widths else np.zeros(0),
+        knot_widths=np.concatenate(knots) if any_swells else None,
         **header,
     )
 
@@ -120,7 +132,9 @@ def _header(line: bytes) -> dict[str, Any]:
     value = _json(line, 1)
     if not isinstance(value, dict) or value.get("format") != "penink-strokes":
         raise FormatError('line 1: no header {"format": "penink-strokes", "version": 1, …}')
-    version = value.get("version")
+    if "version" not in value:
+        raise FormatError("line 1: version missing, only 1 is known")
+    version = value["version"]
     if isinstance(version, bool) or not isinstance(version, int) or version != 1:
         raise FormatError(f"line 1: version {_shown(version)}, only 1 is known")
     header: dict[str, Any] = {}
@@ -133,28 +147,59 @@ def _header(line: bytes) -> dict[str, Any]:
     header["seed"] = value.get("seed")
     if type(seed := value.get("seed", 0)) is not int or abs(seed) >= 1 << 63:
         raise FormatError(f"line 1: seed {strict_json.quoted(seed)} is not a whole number of 64 bits")
+    color = header["color"] = value.get("color")
+    if "color" in value and not (isinstance(color, str) and re.fullmatch("#[0-9a-fA-F]{6}", color, re.ASCII)):
+        raise FormatError(f"line 1: color {strict_json.quoted(color)} is not #rrggbb")
+    dpi = header["device_dpi"] = value.get("device_dpi")
+    if dpi is not None and not (_is_number(dpi) and dpi > 0):
+        raise FormatError(
+            f"line 1: device_dpi {strict_json.quoted(dpi)} is not null or a number above 0 and up to {LIMIT:.0f}"
+        )
     return header
 
 
-def _stroke(line: bytes, line_number: int) -> tuple[float, np.ndarray]:
-    """Width and control points (3k + 1, 2) of one line."""
+def _stroke(line: bytes, line_number: int) -> tuple[float, np.ndarray, np.ndarray | None]:
+    """Width, control points (3k + 1, 2) and, where it has them, widths at the knots (k + 1,) of one line."""
     value = _json(line, line_number)
     if not isinstance(value, dict):
         raise FormatError(f"line {line_number}: {_shown(value)} is not a stroke")
     width = _size(value, "width", line_number)
-    points = value.get("points")
+    if "points" not in value:
+        raise FormatError(f"line {line_number}: points missing")
+    points = value["points"]
     if not isinstance(points, list) or len(points) % 3 != 1:
         found = f"{len(points)} points" if isinstance(points, list) else f"points {_shown(points)}"
         raise FormatError(f"line {line_number}: {found}; a stroke has 3k + 1 of them, a list of [x, y]")
     for k, point in enumerate(points):
         if not isinstance(point, list) or len(point) != 2 or not all(map(_is_number, point)):
             raise FormatError(f"line {line_number}: point {k}: {_shown(point)} is not [x, y] within ±{LIMIT:.0f}")
-    return width, np.array(points, np.float64)
+    return width, np.array(points, np.float64), _at_knots(value, width, (len(points) + 2) // 3, line_number)
+
+
+def _at_knots(value: dict[str, Any], width: float, count: int, line_number: int) -> np.ndarray | None:
+    """The widths at the knots, where the stroke has them."""
+    if "widths" not in value:
+        return None
+    widths = value["widths"]
+    if not isinstance(widths, list) or len(widths) != count:
+        found = f"{len(widths)} widths" if isinstance(widths, list) else f"widths {_shown(widths)}"
+        raise FormatError(f"line {line_number}: {found}; a stroke of {count - 1} segments has {count}, one a knot")
+    for k, number in enumerate(widths):
+        if not _is_number(number) or number < 0:
+            raise FormatError(
+                f"line {line_number}: width {k} of widths: {_shown(number)} is not a number from 0 to {LIMIT:.0f}"
+            )
+    mean = math.fsum(widths) / count
+    if not _plain_json.agree(width, mean):
+        raise FormatError(f"line {line_number}: width {width:g} is not the mean of its widths, {mean:g}")
+    return np.array(widths, np.float64)
 
 
 def _size(value: dict[str, Any], name: str, line_number: int) -> float:
-    number = value.get(name)
-    if number is None or not _is_number(number) or not number > 0:
+    if name not in value:
+        raise FormatError(f"line {line_number}: {name} missing")
+    number = value[name]
+    if not _is_number(number) or not number > 0:
         raise FormatError(f"line {line_number}: {name} {_shown(number)} is not a number above 0 and up to {LIMIT:.0f}")
     return float(number)
 
@@ -168,9 +213,7 @@ def _json(line: bytes, line_number: int) -> Any:
 
 
 def _shown(value: Any) -> str:
-    """A value as found, shortened; nothing is said of a member that is missing but that."""
-    if value is None:
-        return "missing"
+    """A value as found, shortened."""
     text = json.dumps(value)
     return text if len(text) <= 60 else text[:57] + "..."
 
@@ -196,15 +239,18 @@ class Writer:
         layer: str | None = None,
         texture: str | None = None,
         seed: int | None = None,
+        color: str | None = None,
+        device_dpi: float | None = None,
     ):
         for name, side in (("width", width), ("height", height)):
             if not (math.isfinite(side) and 0 < side <= LIMIT):
                 raise ParameterError(f"a sheet {side:g} points in {name}; a strokes file holds up to {LIMIT:.0f}")
         text = f'{{"format": "penink-strokes", "version": 1, "width": {max(width, 0.001):.3f}'
         text += f', "height": {max(height, 0.001):.3f}'
-        for name, value in (("layer", layer), ("texture", texture), ("seed", seed)):
+        for name, value in (("layer", layer), ("texture", texture), ("seed", seed), ("color", color)):
             if value is not None:
                 text += f', "{name}": {json.dumps(value)}'
+        text += f', "device_dpi": {"null" if device_dpi is None else format(device_dpi, ".3f")}'
         self._out = out
         self._written = 0
         out.write(text.encode("ascii") + b"}\n")
@@ -218,10 +264,14 @@ class Writer:
         points = np.ascontiguousarray(strokes.points, np.float64)
         first = np.ascontiguousarray(strokes.first, np.int64)
         widths = np.ascontiguousarray(strokes.widths, np.float64)
+        knots = np.zeros(0)
+        if strokes.knot_widths is not None:
+            knots = np.ascontiguousarray(strokes.knot_widths, np.float64)
         for start in range(0, len(widths), BATCH):
             stop = min(start + BATCH, len(widths))
-            room = np.empty((stop - start) * 48 + int(first[stop] - first[start]) * 32, np.uint8)
-            size = _stroke_lines.put(points, first, widths, start, stop, LIMIT, room)
+            a_point = 46 if len(knots) else 32
+            room = np.empty((stop - start) * 64 + int(first[stop] - first[start]) * a_point, np.uint8)
+            size = _stroke_lines.put(points, first, widths, knots, start, stop, LIMIT, room)
             if size < 0:
                 raise ParameterError(
                     f"stroke {self._written - 1 - size}: a number beyond ±{LIMIT:.0f} points, or a width of nothing"
@@ -233,4 +283,4 @@ class Writer:
 def write(out: Sink, strokes: Strokes) -> None:
     """Write a whole strokes file."""
     s = strokes
-    Writer(out, s.width, s.height, layer=s.layer, texture=s.texture, seed=s.seed).add(s)
+    Writer(out, s.width, s.height, s.layer, s.texture, s.seed, s.color, s.device_dpi).add(s)

@@ -34,7 +34,7 @@ def ordered(
     ends[0::2] = strokes.points[strokes.first[:-1]]
     ends[1::2] = strokes.points[strokes.first[1:] - 1]
     tour, flips = _tour(ends, improve, advance)
-    return _rearranged(strokes, tour, flips)
+    return strokes.taken(tour, flips[tour])
 
 
 def _tour(ends: Floats, improve: bool, advance: Callable[[int], None]) -> tuple[Ints, np.ndarray]:
@@ -112,21 +112,10 @@ def _interleaved(cells: Ints) -> Ints:
     return cells[:, 0] | (cells[:, 1] << 1)
 
 
-def _rearranged(strokes: Strokes, tour: Ints, flips: np.ndarray) -> Strokes:
-    """Strokes in the order of tour, those flipped (by their old number) from end to start."""
-    counts = np.diff(strokes.first)[tour]
-    first = np.concatenate([[0], np.cumsum(counts)])
-    turned = np.repeat(flips[tour], counts)
-    along = np.arange(first[-1]) - np.repeat(first[:-1], counts)
-    begin = np.repeat(strokes.first[tour], counts)
-    index = np.where(turned, begin + np.repeat(counts, counts) - 1 - along, begin + along)
-    return replace(strokes, points=strokes.points[index], first=first, widths=strokes.widths[tour])
-
-
 def joined(strokes: Strokes, tolerance: float) -> Strokes:
     """Strokes whose ends meet the next one's beginning, within ``tolerance`` points, drawn in one go.
 
-    Only strokes of one width are joined, and dots never. The later stroke's beginning moves to
+    Only strokes of one width where they meet are joined, and dots never. The later stroke's beginning moves to
     the earlier one's end, so nothing else of the ink changes than by the tolerance.
     """
     n = len(strokes)
@@ -135,13 +124,15 @@ def joined(strokes: Strokes, tolerance: float) -> Strokes:
     ends, starts = strokes.points[strokes.first[1:-1] - 1], strokes.points[strokes.first[1:-1]]
     drawn = np.diff(strokes.first) > 1
     meet = np.hypot(*(ends - starts).T) <= tolerance
-    meet &= (strokes.widths[1:] == strokes.widths[:-1]) & drawn[1:] & drawn[:-1]
+    widths, knots = strokes.at_knots, strokes.knots
+    meet &= (widths[knots[1:-1] - 1] == widths[knots[1:-1]]) & drawn[1:] & drawn[:-1]
     keep = np.ones(len(strokes.points), bool)
     keep[strokes.first[1:-1][meet]] = False
     begins = np.concatenate([[True], ~meet])
     kept_before = np.concatenate([[0], np.cumsum(keep)])
     first = np.append(kept_before[strokes.first[:-1][begins]], kept_before[-1])
-    return replace(strokes, points=strokes.points[keep], first=first, widths=strokes.widths[begins])
+    result = replace(strokes, points=strokes.points[keep], first=first, widths=strokes.widths[begins], knot_widths=None)
+    return result if strokes.knot_widths is None else result.swelling(np.delete(widths, knots[1:-1][meet]))
 
 
 def travel_length(strokes: Strokes) -> float:

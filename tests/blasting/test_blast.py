@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from penink_cli.blasting import _curves, _due, _ink, _place, _press, _sweep, _walls, candidates, sweep, walls
-from penink_cli.blasting.blast import batches, blast, too_dark
+from penink_cli.blasting.blast import blast, too_dark
 from penink_cli.blasting.shares import shares
 from penink_cli.blasting.sheet import Sheet
 from penink_cli.errors import ParameterError
@@ -236,14 +236,6 @@ def test_every_rule_draws_no_more_than_white_paper_asks(rule):
 def test_an_unknown_rule_is_named():
     with pytest.raises(ParameterError, match="worst"):
         blast(flat(0.5), 10, 10, None, find_texture("grass"), rule="worst")
-
-
-def test_batches_hold_all_strokes_in_order():
-    strokes = blast(flat(0.3), 200, 200, None, find_texture("crosshatch"))
-    parts = list(batches(strokes, 50))
-    assert len(parts) > 3 and np.array_equal(np.concatenate([p.points for p in parts]), strokes.points)
-    assert np.array_equal(np.concatenate([p.widths for p in parts]), strokes.widths)
-    assert all(p.first[0] == 0 and p.first[-1] == len(p.points) for p in parts)
 
 
 def test_what_is_out_of_reach_is_counted():

@@ -2,6 +2,7 @@
 
 import io
 import json
+from dataclasses import replace
 from importlib import resources
 
 import jsonschema
@@ -12,9 +13,12 @@ from hypothesis import strategies as st
 
 from penink_cli.errors import FormatError, ParameterError
 from penink_cli.formats import _plain_json, _stroke_lines, strokes
+from penink_cli.model import HEADER as HEADER_MEMBERS
 from penink_cli.model import Strokes
 
 HEADER = b'{"format": "penink-strokes", "version": 1, "width": 100, "height": 50}\n'
+
+FOUR = b"[[1, 1], [2, 2], [3, 3], [4, 4]]"
 
 numbers = st.floats(-9e6, 9e6).map(lambda v: round(v, 3))
 pens = st.floats(0.001, 1e4).map(lambda v: max(round(v, 4), 0.001))
@@ -25,16 +29,19 @@ def drawings(draw):
     segments = draw(st.lists(st.integers(0, 3), max_size=8))
     first = np.concatenate([[0], np.cumsum([3 * k + 1 for k in segments])]).astype(np.int64)
     points = np.array(draw(st.lists(st.tuples(numbers, numbers), min_size=int(first[-1]), max_size=int(first[-1]))))
-    widths = draw(st.lists(pens, min_size=len(segments), max_size=len(segments)))
-    return Strokes(
-        draw(pens),
-        draw(pens),
-        points.reshape(-1, 2),
-        first,
-        np.array(widths, float),
+    widths = np.array(draw(st.lists(pens, min_size=len(segments), max_size=len(segments))), float)
+    even = Strokes(draw(pens), draw(pens), points.reshape(-1, 2), first, widths)
+    knots = None
+    if draw(st.booleans()):  # some strokes swell, to a point perhaps
+        swings = [draw(st.lists(st.sampled_from([0.0, 1.0, 1.5]), min_size=k + 1, max_size=k + 1)) for k in segments]
+        knots = even.at_knots * np.concatenate([[], *(s if any(s) else np.ones(len(s)) for s in swings)])
+    return replace(
+        even if knots is None else even.swelling(knots),
         layer=draw(st.none() | st.text()),
         texture=draw(st.none() | st.text()),
         seed=draw(st.none() | st.integers(-(1 << 62), 1 << 62)),
+        color=draw(st.none() | st.from_regex("#[0-9a-fA-F]{6}", fullmatch=True)),
+        device_dpi=draw(st.none() | st.integers(10, 4800).map(float)),
     )
 
 
@@ -57,11 +64,22 @@ def test_the_compiled_build_is_the_one_under_test():
 @given(drawings())
 def test_round_trip(s):
     back = read(written(s))
-    assert (back.layer, back.texture, back.seed) == (s.layer, s.texture, s.seed)
+    assert [getattr(back, name) for name in HEADER_MEMBERS] == [getattr(s, name) for name in HEADER_MEMBERS]
     assert np.array_equal(back.first, s.first)
     assert np.allclose(back.points, s.points, rtol=0, atol=0.0006)
     assert np.allclose(back.widths, s.widths, rtol=0, atol=0.00006)
+    assert np.allclose(back.at_knots, s.at_knots, rtol=0, atol=0.00011)
     assert written(back) == written(read(written(back)))
+
+
+@settings(deadline=None)
+@given(drawings())
+def test_rounded_is_what_is_read_back(s):
+    back, rounded = read(written(s)), s.rounded()
+    assert (back.width, back.height) == (rounded.width, rounded.height)
+    for name in ("points", "first", "widths", "at_knots"):
+        assert np.array_equal(getattr(back, name), getattr(rounded, name))
+    assert (back.knot_widths is None) == (rounded.knot_widths is None)
 
 
 @settings(deadline=None)
@@ -78,6 +96,9 @@ def test_every_line_is_what_json_and_the_schema_say(s):
     for i, value in enumerate(values[1:]):
         assert value["width"] == back.widths[i]
         assert np.array_equal(np.array(value["points"], float), back[i])
+        at_knots = back.at_knots[back.knots[i] : back.knots[i + 1]]
+        assert np.array_equal(value.get("widths", [value["width"]] * len(at_knots)), at_knots)
+        assert ("widths" in value) == bool(back.swells[i])
 
 
 @pytest.mark.parametrize(
@@ -96,6 +117,33 @@ def test_one_stroke_in_other_words(line, ending):
     s = read(HEADER + line + ending)
     assert s.widths.tolist() == [3.0]
     assert s.points.tolist() == [[1.0, 2.0]]
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        b'{"width": 1.5, "points": [[1, 2], [2, 2], [3, 2], [4, 2]], "widths": [0, 3]}',
+        b'{"widths": [0, 3], "width": 1.5, "points": [[1, 2], [2, 2], [3, 2], [4, 2]]}',
+        b' { "width" : 1.5,"points":[ [1,2] ,[2,2],[3,2],[4,2]] ,"widths" : [ 0 ,3.0 ] } ',
+        b'{"width": 1.51, "points": [[1, 2], [2, 2], [3, 2], [4, 2]], "widths": [0e0, 3]}',
+        b'{"width": 1.51, "points": [[1, 2], [2, 2], [3, 2], [4, 2]], "widths": [0, 3]}',
+    ],
+)
+def test_one_stroke_that_swells_in_other_words(line):
+    even = b'{"width": 2, "points": [[1, 2]]}\n'
+    s = read(HEADER + even + line + b"\n" + even)
+    assert s.at_knots.tolist() == [2.0, 0.0, 3.0, 2.0]
+    assert s.swells.tolist() == [False, True, False]
+    assert s.widths[1] == pytest.approx(1.5, abs=0.011)
+
+
+def test_a_header_tells_ink_and_printer():
+    text = HEADER[:-2] + b', "color": "#A0b1c2", "device_dpi": 1200}\n'
+    s = read(text)
+    assert (s.color, s.device_dpi) == ("#A0b1c2", 1200.0)
+    assert read(written(s)).device_dpi == 1200.0
+    assert b'"device_dpi": null' in written(replace(s, device_dpi=None))
+    assert read(written(replace(s, device_dpi=None))).device_dpi is None
 
 
 @settings(deadline=None)
@@ -121,12 +169,30 @@ def test_numbers_are_the_doubles_that_python_reads(text):
         (b'{"format": "penink-strokes", "version": 1, "width": 1, "height": 1, "seed": 0.5}\n', "seed 0.5 is not"),
         (b'{"format": "penink-strokes", "version": 1, "width": 1, "height": 1, "layer": null}\n', "layer null is not"),
         (b'{"format": "penink-strokes", "version": 1, "width": 1, "height": 1, "seed": null}\n', "seed null is not"),
+        (HEADER[:-2] + b', "color": "red"}\n', 'line 1: color "red" is not #rrggbb'),
+        (HEADER[:-2] + b', "color": null}\n', "line 1: color null is not #rrggbb"),
+        (HEADER[:-2] + b', "device_dpi": 0}\n', "line 1: device_dpi 0 is not null or a number"),
+        (HEADER[:-2] + b', "device_dpi": "600"}\n', 'line 1: device_dpi "600" is not null or a number'),
+        (HEADER[:-2] + b', "device_dpi": true}\n', "line 1: device_dpi true is not null or a number"),
+        (HEADER + b'{"width": 1, "points": %s, "widths": [1]}\n' % FOUR, "line 2: 1 widths; a stroke of 1"),
+        (HEADER + b'{"width": 1, "points": %s, "widths": [1, 1, 1]}\n' % FOUR, "line 2: 3 widths; a stroke of 1"),
+        (HEADER + b'{"width": 1, "points": %s, "widths": 1}\n' % FOUR, "line 2: widths 1; a stroke of 1"),
+        (HEADER + b'{"width": 1, "points": %s, "widths": null}\n' % FOUR, "line 2: widths null; a stroke of"),
+        (HEADER + b'{"width": 1, "points": %s, "widths": [3, -1]}\n' % FOUR, "line 2: width 1 of widths: -1 is not"),
+        (HEADER + b'{"width": 1, "points": %s, "widths": [1, true]}\n' % FOUR, "line 2: width 1 of widths: true is"),
+        (HEADER + b'{"width": 1, "points": %s, "widths": [1, 1e8]}\n' % FOUR, "line 2: width 1 of widths: 1000"),
+        (HEADER + b'{"width": 1, "points": %s, "widths": [1, 2]}\n' % FOUR, "line 2: width 1 is not the mean of its"),
+        (HEADER + b'{"width": 1, "points": %s, "widths": [1, 1],}\n' % FOUR, "line 2"),
         (HEADER + b"\n", "line 2"),
         (HEADER + b"7\n", "line 2: 7 is not a stroke"),
         (HEADER + b'{"width": 1, "points": [[1, 2]]}\n{"width": 1, "points": [[1, 2]]\n', "line 3"),
         (HEADER + b'{"width": 1, "points": []}\n', "line 2: 0 points"),
         (HEADER + b'{"width": 1, "points": [[1, 2], [1, 2]]}\n', "line 2: 2 points"),
         (HEADER + b'{"width": 1}\n', "line 2: points missing"),
+        (HEADER + b'{"width": 1, "points": null}\n', "line 2: points null"),
+        (HEADER + b'{"points": [[1, 2]]}\n', "line 2: width missing"),
+        (HEADER + b'{"width": null, "points": [[1, 2]]}\n', "line 2: width null is not a number above 0"),
+        (b'{"format": "penink-strokes", "width": 1, "height": 1}\n', "line 1: version missing"),
         (HEADER + b'{"width": 1, "points": {"0": 1}}\n', 'line 2: points {"0": 1}'),
         (HEADER + b'{"width": 1, "points": [[1, 2, 3]]}\n', "line 2: point 0: [1, 2, 3]"),
         (HEADER + b'{"width": 1, "points": [[1, false]]}\n', "line 2: point 0: [1, false]"),

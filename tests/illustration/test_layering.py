@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from penink_cli import layering
-from penink_cli.drawing import joined
-from penink_cli.model import EdgeList, GreyImage, Illustration, Layer, OutlineChoice
+from penink_cli.model import EdgeList, GreyImage, Illustration, Layer, OutlineChoice, Strokes
 from penink_cli.texture_options import find_texture
 from tests.blasting import measures
 
@@ -32,7 +31,7 @@ def two_layers(side: int = 48) -> tuple[Illustration, np.ndarray]:
 def left_over(illustration: Illustration, tone: np.ndarray) -> float:
     """The mean of four hands: one's may be off by a tenth."""
     drawings = [
-        joined([part for layer in layering.layer_strokes(illustration, 144.0, seed=100 * hand) for part in layer])
+        Strokes.joined([part for pair in layering.layer_strokes(illustration, 144.0, seed=100 * hand) for part in pair])
         for hand in range(4)
     ]
     return float(np.mean([measures.tone_figures(strokes, tone)[0] for strokes in drawings]))
