@@ -1,0 +1,1 @@
+"""Compiled loops of blasting; each is imported by one module alone."""

@@ -1,0 +1,330 @@
+# cython: language_level=3, boundscheck=False, wraparound=False, cdivision=True
+"""Compiled loops that make pen strokes of polylines: evening and smoothing them, cutting, fitting cubics.
+
+Only `pen_lines` imports this module.
+"""
+
+from libc.math cimport fabs, floor, sqrt
+
+cdef enum:
+    #: Places tried for a cut.
+    TRIES = 10
+    #: Cubics that one stroke may have.
+    MOST_CUBICS = 24
+
+
+cdef inline double _chance(unsigned long long seed, unsigned long long a, unsigned long long b) noexcept nogil:
+    """A number in [0, 1) that depends on the three integers alone (splitmix64)."""
+    cdef unsigned long long z = (
+        seed * <unsigned long long>0x9E3779B97F4A7C15 + a * <unsigned long long>0xD1B54A32D192ED03
+        + b * <unsigned long long>0x8CB92BA72F3D8DD7 + 1
+    )
+    z = (z ^ (z >> 30)) * <unsigned long long>0xBF58476D1CE4E5B9
+    z = (z ^ (z >> 27)) * <unsigned long long>0x94D049BB133111EB
+    return ((z ^ (z >> 31)) >> 11) * 1.1102230246251565e-16
+
+
+def lengths(const double[:, ::1] points, const long long[::1] first, double[::1] out):
+    """How long each polyline is."""
+    cdef Py_ssize_t i, p
+    cdef double x, y, run
+    with nogil:
+        for i in range(first.shape[0] - 1):
+            run = 0.0
+            for p in range(first[i], first[i + 1] - 1):
+                x = points[p + 1, 0] - points[p, 0]
+                y = points[p + 1, 1] - points[p, 1]
+                run += sqrt(x * x + y * y)
+            out[i] = run
+
+
+def even(
+    const double[:, ::1] points, const long long[::1] first, const double[::1] length, const long long[::1] begin,
+    double[:, ::1] out,
+):
+    """Polylines anew in equal steps: of line i begin[i + 1] - begin[i] points, its ends among them."""
+    cdef Py_ssize_t i, p, k, n
+    cdef double x, y, step, run, leg, f, due
+    with nogil:
+        for i in range(first.shape[0] - 1):
+            n = begin[i + 1] - begin[i] - 1
+            step = length[i] / n
+            p = first[i]
+            run = 0.0
+            x = points[p + 1, 0] - points[p, 0]
+            y = points[p + 1, 1] - points[p, 1]
+            leg = sqrt(x * x + y * y)
+            for k in range(n):
+                due = k * step
+                while run + leg < due and p + 2 < first[i + 1]:
+                    run += leg
+                    p += 1
+                    x = points[p + 1, 0] - points[p, 0]
+                    y = points[p + 1, 1] - points[p, 1]
+                    leg = sqrt(x * x + y * y)
+                f = (due - run) / leg if leg > 1e-12 else 0.0
+                f = 1.0 if f > 1.0 else f
+                out[begin[i] + k, 0] = points[p, 0] + f * x
+                out[begin[i] + k, 1] = points[p, 1] + f * y
+            out[begin[i + 1] - 1, 0] = points[first[i + 1] - 1, 0]
+            out[begin[i + 1] - 1, 1] = points[first[i + 1] - 1, 1]
+
+
+def smooth(double[:, ::1] points, const long long[::1] first, const unsigned char[::1] rounds, const unsigned char[::1] ring):
+    """Move each point to the binomial mean of itself and its neighbours, as many rounds as are asked for at it.
+
+    The ends of a line stay; a ring has none.
+    """
+    cdef Py_ssize_t i, p, a, b
+    cdef int k, most
+    cdef double x, y, x0, y0
+    with nogil:
+        for i in range(first.shape[0] - 1):
+            a = first[i]
+            b = first[i + 1]
+            most = 0
+            for p in range(a, b):
+                if rounds[p] > most:
+                    most = rounds[p]
+            for k in range(most):
+                # (x0, y0): what the neighbour before was before this round
+                p = b - 2 if ring[i] else a
+                x0 = points[p, 0]
+                y0 = points[p, 1]
+                for p in range(a if ring[i] else a + 1, b - 1):
+                    x = points[p, 0]
+                    y = points[p, 1]
+                    if rounds[p] > k:
+                        points[p, 0] = 0.25 * (x0 + 2.0 * x + points[p + 1, 0])
+                        points[p, 1] = 0.25 * (y0 + 2.0 * y + points[p + 1, 1])
+                    x0 = x
+                    y0 = y
+                if ring[i]:
+                    points[b - 1, 0] = points[a, 0]
+                    points[b - 1, 1] = points[a, 1]
+
+
+def chop(
+    const double[:, ::1] points, const long long[::1] first, const double[::1] length,
+    const unsigned char[:, ::1] goes_on, const double[::1] spacing,
+    double shortest, double least, double most, double cell, double left, double top, Py_ssize_t columns,
+    Py_ssize_t rows, unsigned long long seed, int[::1] head, int[::1] link, double[:, ::1] tips,
+    long long[::1] line, double[:, ::1] span, unsigned char[:, ::1] joined,
+):
+    """Cut lines into strokes from least to most long whose ends keep clear of the ends of others; returns how many.
+
+    points: in equal steps on each line. Lines shorter than shortest give none. goes_on: (lines, 2) whether a line goes
+    on as another one at its ends. spacing: (lines,) how far apart lines are there.
+    head, link, tips: the ends so far in lists by cells (columns × rows from left, top), scratch: head -1.
+    line, span, joined: of which line each stroke is, from where to where on it, and whether it goes on at its ends.
+    """
+    cdef Py_ssize_t i, k, t, q, c, r, e, cx, cy
+    cdef Py_ssize_t n = 0
+    cdef Py_ssize_t ends = 0
+    cdef Py_ssize_t room = line.shape[0]
+    cdef double at, end, where, step, f, x, y, tx, ty, d, cost, best, along, across, bx, by, reach
+    cdef bint last
+    cdef bint before
+    with nogil:
+        for i in range(first.shape[0] - 1):
+            if length[i] < shortest:
+                continue
+            q = first[i + 1] - first[i] - 1
+            step = length[i] / q
+            at = 0.0
+            before = goes_on[i, 0]
+            reach = 2.2 * spacing[i]
+            reach = 3.0 if reach < 3.0 else (10.0 if reach > 10.0 else reach)
+            k = 0
+            bx = 0.0
+            by = 0.0
+            while True:
+                last = length[i] - at <= most
+                end = length[i]
+                if not last:
+                    best = 1e30
+                    for t in range(TRIES):
+                        where = at + least + _chance(seed, i * 4096 + k, t) * (most - least)
+                        if where > length[i] - least:
+                            where = length[i] - least - _chance(seed, i * 4096 + k, t + 64) * 2.0
+                        c = <Py_ssize_t>(where / step)
+                        c = q - 1 if c >= q else c
+                        f = where / step - c
+                        c = first[i] + c
+                        tx = points[c + 1, 0] - points[c, 0]
+                        ty = points[c + 1, 1] - points[c, 1]
+                        x = points[c, 0] + f * tx
+                        y = points[c, 1] + f * ty
+                        d = sqrt(tx * tx + ty * ty) + 1e-12
+                        tx /= d
+                        ty /= d
+                        cost = 0.0
+                        cx = <Py_ssize_t>floor((x - left) / cell)
+                        cy = <Py_ssize_t>floor((y - top) / cell)
+                        for r in range(cy - 1, cy + 2):
+                            for c in range(cx - 1, cx + 2):
+                                if c < 0 or r < 0 or c >= columns or r >= rows:
+                                    continue
+                                e = head[r * columns + c]
+                                while e >= 0:
+                                    along = fabs((tips[e, 0] - x) * tx + (tips[e, 1] - y) * ty)
+                                    across = fabs((tips[e, 1] - y) * tx - (tips[e, 0] - x) * ty)
+                                    if along < 5.0 and across < reach:
+                                        cost += (5.0 - along) * (1.3 * reach - across) / reach
+                                    e = link[e]
+                        if cost < best:
+                            best = cost
+                            end = where
+                            bx = x
+                            by = y
+                    cx = <Py_ssize_t>floor((bx - left) / cell)
+                    cy = <Py_ssize_t>floor((by - top) / cell)
+                    if 0 <= cx < columns and 0 <= cy < rows and ends < tips.shape[0]:
+                        tips[ends, 0] = bx
+                        tips[ends, 1] = by
+                        link[ends] = head[cy * columns + cx]
+                        head[cy * columns + cx] = <int>ends
+                        ends += 1
+                if n < room:
+                    line[n] = i
+                    span[n, 0] = at
+                    span[n, 1] = end
+                    joined[n, 0] = before
+                    joined[n, 1] = goes_on[i, 1] if last else 1
+                n += 1
+                if last:
+                    break
+                before = 1
+                at = end
+                k += 1
+    return n
+
+
+cdef inline void _at(
+    const double *p, Py_ssize_t steps, double step, double s, double *x, double *y
+) noexcept nogil:
+    """The point s along a polyline p of so many equal steps, straight on beyond its ends."""
+    cdef Py_ssize_t k
+    cdef double f, dx, dy, d
+    if 0.0 <= s <= steps * step:
+        k = <Py_ssize_t>(s / step)
+        k = steps - 1 if k >= steps else k
+        f = s / step - k
+        x[0] = p[2 * k] + f * (p[2 * k + 2] - p[2 * k])
+        y[0] = p[2 * k + 1] + f * (p[2 * k + 3] - p[2 * k + 1])
+        return
+    # the direction of the last few points
+    k = 5 if steps > 5 else steps
+    if s < 0.0:
+        dx = p[0] - p[2 * k]
+        dy = p[1] - p[2 * k + 1]
+        s = -s
+    else:
+        s = s - steps * step
+        p = p + 2 * steps
+        dx = p[0] - p[-2 * k]
+        dy = p[1] - p[1 - 2 * k]
+    d = s / (sqrt(dx * dx + dy * dy) + 1e-12)
+    x[0] = p[0] + d * dx
+    y[0] = p[1] + d * dy
+
+
+cdef inline void _by_hand(
+    const double *p, Py_ssize_t steps, double step, double s0, double s1, const double *hand, double u,
+    double *x, double *y
+) noexcept nogil:
+    """The point at u, 0 … 1, of the stroke from s0 to s1: beside the line by shift, tilt and bow of the hand."""
+    cdef double s = s0 + u * (s1 - s0)
+    cdef double aside = hand[0] + hand[1] * (2.0 * u - 1.0) + hand[2] * (4.0 * u * (1.0 - u) - 0.6666666666666666)
+    cdef double x0, y0, x1, y1, d
+    _at(p, steps, step, s - 1.5, &x0, &y0)
+    _at(p, steps, step, s + 1.5, &x1, &y1)
+    _at(p, steps, step, s, x, y)
+    x1 = x1 - x0
+    y1 = y1 - y0
+    d = aside / (sqrt(x1 * x1 + y1 * y1) + 1e-12)
+    x[0] = x[0] - d * y1
+    y[0] = y[0] + d * x1
+
+
+cdef double _fit(
+    const double *p, Py_ssize_t steps, double step, double s0, double s1, const double *hand, Py_ssize_t k, double *out
+) noexcept nogil:
+    """Control points (3 k + 1, 2) of the stroke as k cubics, through it at every third; returns how far they are off."""
+    cdef Py_ssize_t m, t
+    cdef double q1x, q1y, q2x, q2y, x, y, u, v, w, dx, dy
+    cdef double worst = 0.0
+    cdef double *c
+    for m in range(k + 1):
+        _by_hand(p, steps, step, s0, s1, hand, (<double>m) / k, &out[6 * m], &out[6 * m + 1])
+    for m in range(k):
+        c = out + 6 * m
+        _by_hand(p, steps, step, s0, s1, hand, (m + 0.3333333333333333) / k, &q1x, &q1y)
+        _by_hand(p, steps, step, s0, s1, hand, (m + 0.6666666666666666) / k, &q2x, &q2y)
+        c[2] = (18.0 * q1x - 5.0 * c[0] - 9.0 * q2x + 2.0 * c[6]) / 6.0
+        c[3] = (18.0 * q1y - 5.0 * c[1] - 9.0 * q2y + 2.0 * c[7]) / 6.0
+        c[4] = (18.0 * q2x - 5.0 * c[6] - 9.0 * q1x + 2.0 * c[0]) / 6.0
+        c[5] = (18.0 * q2y - 5.0 * c[7] - 9.0 * q1y + 2.0 * c[1]) / 6.0
+    # smooth joints: both handles along the mean of the two
+    for m in range(1, k):
+        c = out + 6 * m
+        dx = 0.5 * (c[2] - c[-2])
+        dy = 0.5 * (c[3] - c[-1])
+        c[2] = c[0] + dx
+        c[3] = c[1] + dy
+        c[-2] = c[0] - dx
+        c[-1] = c[1] - dy
+    for m in range(k):
+        c = out + 6 * m
+        for t in range(3):
+            u = 0.16666666666666666 + t * 0.3333333333333333
+            v = 1.0 - u
+            _by_hand(p, steps, step, s0, s1, hand, (m + u) / k, &x, &y)
+            w = v * v * v
+            dx = w * c[0] + 3.0 * u * v * (v * c[2] + u * c[4]) + u * u * u * c[6] - x
+            dy = w * c[1] + 3.0 * u * v * (v * c[3] + u * c[5]) + u * u * u * c[7] - y
+            w = dx * dx + dy * dy
+            worst = w if w > worst else worst
+    return sqrt(worst)
+
+
+def cubics(
+    const double[:, ::1] points, const long long[::1] first, const double[::1] length,
+    const long long[::1] line, const double[:, ::1] span, const double[:, ::1] hand, double tolerance,
+    long long[::1] count,
+):
+    """How many cubics (n,) each stroke needs to be within tolerance of the line that the hand draws along.
+
+    line, span: of which line each is, from where to where, beyond its ends too. hand: (n, 3) shift to the side, the
+    same more at the end and less at the start, and bow, points.
+    """
+    cdef Py_ssize_t n, k, steps
+    cdef double[6 * MOST_CUBICS + 2] out
+    cdef double step
+    with nogil:
+        for n in range(line.shape[0]):
+            steps = first[line[n] + 1] - first[line[n]] - 1
+            step = length[line[n]] / steps
+            k = 1
+            while k < MOST_CUBICS and _fit(
+                &points[first[line[n]], 0], steps, step, span[n, 0], span[n, 1], &hand[n, 0], k, out
+            ) > tolerance:
+                k += 1 if k < 4 else (k + 1) // 2
+            count[n] = k if k < MOST_CUBICS else MOST_CUBICS
+
+
+def draw(
+    const double[:, ::1] points, const long long[::1] first, const double[::1] length,
+    const long long[::1] line, const double[:, ::1] span, const double[:, ::1] hand, const long long[::1] count,
+    const long long[::1] begin, double[:, ::1] out,
+):
+    """Control points of each stroke as count cubics, from begin on in out (see `cubics`)."""
+    cdef Py_ssize_t n, steps
+    cdef double step
+    with nogil:
+        for n in range(line.shape[0]):
+            steps = first[line[n] + 1] - first[line[n]] - 1
+            step = length[line[n]] / steps
+            _fit(
+                &points[first[line[n]], 0], steps, step, span[n, 0], span[n, 1], &hand[n, 0], count[n], &out[begin[n], 0]
+            )

@@ -1,0 +1,127 @@
+"""Level lines of a phase: polylines, found band by band and joined.
+
+Memory is that of a band's crossings and of the lines themselves.
+
+This module alone imports the compiled kernel `levels`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from penink_cli.blasting import curves
+from penink_cli.blasting._compiled import levels as _levels
+from penink_cli.blasting.phase import BAND, Each, Field, Plane, one_by_one
+from penink_cli.model import Floats, Ints
+
+#: Crossings of one link that are told from each other in two bands that share it.
+PER_LINK = 16
+
+
+@dataclass(frozen=True, eq=False)
+class Lines:
+    """points: (p, 2); first: (n + 1,) line i owns points[first[i] : first[i + 1]]; ring: (n,) it ends where it began."""
+
+    points: Floats
+    first: Ints
+    ring: npt.NDArray[np.bool_]
+
+
+def level_lines(field: Field, phase: Plane, level: float = 0.0, each: Each = one_by_one) -> Lines:
+    """Where the phase (rows, columns; see `phase.solve`) is `level` but for whole turns: 0, or 1/2 for lines between.
+
+    Lines end at singularities and at the border of the grid.
+    """
+    rows = field.nodes.rows
+    cuts = list(range(0, rows - 1, BAND))
+    found: dict[int, tuple[Floats, Ints, Ints]] = {}
+
+    def band(low: int) -> None:
+        found[low] = _band_lines(field, phase, level, low, min(low + BAND, rows - 1))
+
+    each(band, cuts)
+    parts = [found.pop(low) for low in cuts]
+    return _joined(parts, field.nodes.columns)
+
+
+def _band_lines(field: Field, phase: Plane, level: float, low: int, high: int) -> tuple[Floats, Ints, Ints]:
+    """Points, first and ends (see the kernel) of the lines between two rows of nodes."""
+    nodes = field.nodes
+    shape = high - low + 1, nodes.columns, 3
+    change, sign = np.empty(shape, np.float32), np.empty(shape, np.int8)
+    begin = np.empty(change.size + 1, np.int32)
+    total = _levels.crossings(
+        phase, field.nx, field.ny, field.density, nodes.dx, nodes.dy, level, low, high, change, sign, begin
+    )
+    place, border, beside = np.empty((total, 2)), np.empty(total, np.int32), np.empty((total, 2), np.int32)
+    _levels.places(phase, level, low, change, begin, nodes.left, nodes.top, nodes.dx, nodes.dy, place, border)
+    _levels.pairs(phase, level, low, change, sign, begin, beside)
+    del change, sign, begin
+    points = np.empty((total + total // 4 + 1, 2))
+    first, ends = np.empty(total // 2 + 2, np.int32), np.empty((total // 2 + 1, 2), np.int32)
+    n = _levels.follow(beside, place, border, points, first, ends)
+    return points[: first[n]].copy(), first[: n + 1].astype(np.int64), ends[:n].astype(np.int64)
+
+
+def _joined(parts: list[tuple[Floats, Ints, Ints]], columns: int) -> Lines:
+    """The lines of all bands, those that end on the row between two bands made one."""
+    counts = np.array([len(first) - 1 for _, first, _ in parts])
+    size = np.concatenate([np.diff(first) for _, first, _ in parts])
+    points = np.concatenate([points for points, _, _ in parts])
+    first = curves.starts(size)
+    ends = np.concatenate([ends for _, _, ends in parts])
+    ring = ends[:, 0] == -2
+    # the last row of a band is the first one of the next: number rows through
+    band = np.repeat(np.arange(len(parts)), counts)
+    key = np.where(ends >= 0, ends + band[:, None] * (PER_LINK * columns), -1).ravel()
+    order = np.argsort(key, kind="stable")
+    order = order[key[order] >= 0]
+    same = np.flatnonzero(key[order][1:] == key[order][:-1])
+    if not len(same):
+        return Lines(points, first, ring)
+    partner = np.full(len(key), -1)
+    partner[order[same]], partner[order[same + 1]] = order[same + 1], order[same]
+    chains = _chains(partner.tolist())
+    # lines that are joined come after all others; a point on the row between two bands is in both
+    whole = np.flatnonzero((partner.reshape(-1, 2) < 0).all(axis=1))
+    pieces = [np.arange(first[i], first[i + 1]) for i in ()]
+    sizes = []
+    closed = []
+    for chain, is_ring in chains:
+        begin = len(pieces)
+        for k, end in enumerate(chain):
+            i = end >> 1
+            at = np.arange(first[i], first[i + 1])
+            at = at[::-1] if end & 1 else at
+            pieces.append(at[1:] if k else at)
+        sizes.append(sum(len(piece) for piece in pieces[begin:]))
+        closed.append(is_ring)
+    kept = np.repeat(first[whole], size[whole]) + curves.ramp(size[whole])
+    take = np.concatenate([kept, *pieces])
+    return Lines(
+        points[take], curves.starts(np.concatenate([size[whole], np.array(sizes, np.int64)])),
+        np.concatenate([ring[whole], np.array(closed, bool)]),
+    )  # fmt: skip
+
+
+def _chains(partner: list[int]) -> list[tuple[list[int], bool]]:
+    """Runs of lines that are joined: of each line the end at which it is entered, and whether the run is a ring.
+
+    partner: for each end (2 i, 2 i + 1 of line i) the end that it is joined to, or -1.
+    """
+    done = [False] * (len(partner) // 2)
+    out = []
+    for ring in (False, True):
+        for start, other in enumerate(partner):
+            if done[start >> 1] or partner[start ^ 1] < 0 or (other >= 0 and not ring):
+                continue
+            chain, end = [], start
+            while end >= 0 and not done[end >> 1]:
+                done[end >> 1] = True
+                chain.append(end)
+                end = partner[end ^ 1]
+            out.append((chain, ring))
+    return out

@@ -1,0 +1,133 @@
+"""Pen strokes from lines: evened, smoothed, cut to a hand's length, drawn as cubics with a hand's waver.
+
+This module alone imports the compiled kernel `lines`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from penink_cli.blasting import curves
+from penink_cli.blasting._compiled import lines as _lines
+from penink_cli.blasting.level_lines import Lines
+from penink_cli.model import Floats, Ints
+
+#: Distance of a line's points, points on paper.
+STEP_PT = 1.0
+#: Lines are smoothed over so much of their distance: rounds of a binomial mean of σ² ½ each, two at the least.
+SMOOTHING, FEWEST_ROUNDS, MOST_ROUNDS = 0.5, 2, 40
+#: A stroke follows its line within this.
+TOLERANCE_PT = 0.2
+#: Cells of the lists in which ends are looked for when a line is cut.
+ENDS_CELL_PT = 10.0
+
+
+@dataclass(frozen=True, eq=False)
+class Parts:
+    """Parts of lines that are to be strokes.
+
+    line: (n,) of which; span: (n, 2) from where to where along it, points; joined: (n, 2) whether another goes on from
+    its start, its end.
+    """
+
+    line: Ints
+    span: Floats
+    joined: npt.NDArray[np.bool_]
+
+
+def lengths(lines: Lines) -> Floats:
+    """(n,) length of each line, points."""
+    out = np.empty(len(lines.ring))
+    _lines.lengths(lines.points, lines.first, out)
+    return out
+
+
+def evened(lines: Lines, shortest_pt: float) -> Lines:
+    """The lines that are not shorter than that, in equal steps of about `STEP_PT`."""
+    length = lengths(lines)
+    keep = np.flatnonzero(length >= max(shortest_pt, 1e-6))
+    kept = curves.take(curves.Polylines(lines.points, lines.first), keep, np.zeros((len(keep), 2)))
+    steps = np.maximum(1, np.floor(length[keep] / STEP_PT + 0.5)).astype(np.int64)
+    begin = curves.starts(steps + 1)
+    out = np.empty((begin[-1], 2))
+    _lines.even(kept.points, kept.first, length[keep], begin, out)
+    return Lines(out, begin, lines.ring[keep])
+
+
+def smoothed(lines: Lines, spacing: Floats) -> Lines:
+    """Lines without the corners that the grid gives them, evened out the more the further (p,) they are apart."""
+    rounds = np.clip(SMOOTHING * spacing * spacing, FEWEST_ROUNDS, MOST_ROUNDS).astype(np.uint8)
+    points = lines.points.copy()
+    _lines.smooth(points, lines.first, rounds, lines.ring.astype(np.uint8))
+    return Lines(points, lines.first, lines.ring)
+
+
+def live(lines: Lines, wanted: npt.NDArray[np.bool_], fewest: int = 3) -> tuple[Lines, npt.NDArray[np.bool_]]:
+    """The runs of points that are wanted (p,), at least so many in a row, and whether (n, 2) they are cut there.
+
+    A ring of which some is not wanted falls into runs that begin and end where it did.
+    """
+    n = len(lines.ring)
+    who = np.repeat(np.arange(n), np.diff(lines.first))
+    key = np.concatenate([[-1], np.where(wanted, who, -1), [-1]])
+    change = np.flatnonzero(key[1:] != key[:-1])
+    start = change[key[change + 1] >= 0]
+    end = change[np.searchsorted(change, start) + 1]
+    long = end - start >= fewest
+    start, end = start[long], end[long]
+    line = who[start] if len(start) else np.zeros(0, np.int64)
+    size = end - start
+    first = curves.starts(size)
+    points = lines.points[np.repeat(start, size) + curves.ramp(size)]
+    cut = np.column_stack([start > lines.first[line], end < lines.first[line + 1]])
+    return Lines(points, first, lines.ring[line] & ~cut.any(axis=1)), cut
+
+
+def turned_rings(lines: Lines, seed: int) -> Lines:
+    """Rings begun anywhere: where they were found first they would all begin along one line."""
+    points = lines.points.copy()
+    rng = np.random.default_rng([seed & 0xFFFFFFFF, 9])
+    for i, at in zip(np.flatnonzero(lines.ring).tolist(), rng.random(int(lines.ring.sum())).tolist()):
+        ring = points[lines.first[i] : lines.first[i + 1]]
+        ring[:-1] = np.roll(ring[:-1], -int(at * (len(ring) - 1)), axis=0)
+        ring[-1] = ring[0]
+    return Lines(points, lines.first, lines.ring)
+
+
+def cut(lines: Lines, spacing: Floats, stroke_pt: tuple[float, float], shortest_pt: float, seed: int) -> Parts:
+    """Strokes of a hand's length, whose ends keep clear of others' ends.
+
+    lines: in equal steps. spacing: (n,) about how far from its neighbours each line is.
+    """
+    length = lengths(lines)
+    room = int((length / stroke_pt[0]).sum()) + len(length) + 16
+    goes_on = np.repeat(lines.ring[:, None], 2, axis=1).astype(np.uint8)
+    low = lines.points.min(axis=0) if len(lines.points) else np.zeros(2)
+    high = lines.points.max(axis=0) if len(lines.points) else np.zeros(2)
+    columns, rows = (int(side / ENDS_CELL_PT) + 1 for side in high - low)
+    line, span, joined = np.empty(room, np.int64), np.empty((room, 2)), np.empty((room, 2), np.uint8)
+    n = _lines.chop(
+        lines.points, lines.first, length, goes_on, np.ascontiguousarray(spacing), shortest_pt, *stroke_pt,
+        ENDS_CELL_PT, float(low[0]), float(low[1]), columns, rows, seed,
+        np.full(columns * rows, -1, np.int32), np.empty(room, np.int32), np.empty((room, 2)), line, span, joined,
+    )  # fmt: skip
+    return Parts(line[:n], span[:n], joined[:n] > 0)
+
+
+def drawn(lines: Lines, parts: Parts, hand: Floats) -> tuple[Floats, Ints]:
+    """Control points and where each stroke's begin: the parts as chains of cubics, which may reach beyond their lines.
+
+    hand: (n, 3) how far each stroke is off its line: all of it, the same more at its end and less at its start, and its
+    bow, points.
+    """
+    length = lengths(lines)
+    span, hand = np.ascontiguousarray(parts.span), np.ascontiguousarray(hand)
+    count = np.empty(len(parts.line), np.int64)
+    _lines.cubics(lines.points, lines.first, length, parts.line, span, hand, TOLERANCE_PT, count)
+    first = curves.starts(3 * count + 1)
+    points = np.empty((first[-1], 2))
+    _lines.draw(lines.points, lines.first, length, parts.line, span, hand, count, first, points)
+    return points, first

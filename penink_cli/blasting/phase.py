@@ -1,0 +1,134 @@
+"""A phase over the sheet whose level lines are pen lines: along a field of directions, as dense as is asked.
+
+Where lines are to run along a field, their phase grows by their density (lines a point) along the field's normal. Such
+a phase exists exactly for few fields only, and a line has no front, so that the normal may point either way from place
+to place. So the phase is kept modulo a turn and but for its sign, as a unit complex number at each node of a grid, and
+made to agree with its neighbours as well as all can (after Knöppel, Crane, Pinkall and Schröder, Stripe patterns on
+surfaces, 2015, who solve an eigenproblem for it; this is nested iteration). Where lines must begin or end to keep
+their density, what is left are singularities, few and far apart.
+
+Every level is settled in bands of rows, each with as many rows more on both sides as any node can be felt through
+in its sweeps: the result depends on neither bands nor threads, and memory grows little with the sheet.
+
+This module alone imports the compiled kernel `phase`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from penink_cli.blasting._compiled import phase as _phase
+from penink_cli.model import Floats
+
+Plane: TypeAlias = npt.NDArray[np.float32]
+#: Runs a function over each of some items, on threads or not.
+Each: TypeAlias = Callable[[Callable[[int], None], Iterable[int]], None]
+
+#: Sweeps over each of the coarser grids, and over the finest.
+COARSE_SWEEPS, SWEEPS = 14, 12
+#: Rows to a band.
+BAND = 256
+#: What a link weighs that an edge crosses; one between normals at right angles; how much more one along the lines.
+LEAK, LEAST, ALONG = 0.05, 0.15, 2.0
+
+
+@dataclass(frozen=True)
+class Nodes:
+    """A grid over the sheet: the node in row j, column i is at (left + i dx, top + j dy), points."""
+
+    left: float
+    top: float
+    dx: float
+    dy: float
+    rows: int
+    columns: int
+
+
+@dataclass(frozen=True, eq=False)
+class Field:
+    """Lines asked for at every node.
+
+    nx, ny: (rows, columns) unit normal of the lines, either way. density: lines a point, above nought everywhere.
+    """
+
+    nodes: Nodes
+    nx: Plane
+    ny: Plane
+    density: Plane
+
+
+def one_by_one(work: Callable[[int], None], items: Iterable[int]) -> None:
+    """Run work over items on this thread."""
+    for item in items:
+        work(item)
+
+
+def solve(field: Field, walls: Floats | None, seed: int, each: Each = one_by_one) -> Plane:
+    """The phase (rows, columns), in turns from -1/2 to 1/2, whose level lines lie as the field asks.
+
+    walls: segments (m, 4), points, over which lines need not go on: there the phase may break.
+    """
+    nodes = field.nodes
+    weak = np.zeros((nodes.rows, nodes.columns), np.uint8)
+    if walls is not None and len(walls):
+        at = (walls - np.array([nodes.left, nodes.top] * 2)) / np.array([nodes.dx, nodes.dy] * 2)
+        _phase.weaken(np.ascontiguousarray(at), weak)
+
+    def links(low: int, high: int) -> Plane:
+        out = np.empty((high - low, nodes.columns, 6), np.float32)
+        _phase.links(field.nx, field.ny, field.density, weak, nodes.dx, nodes.dy, LEAK, LEAST, ALONG, low, out)
+        return out
+
+    # coarser and coarser links; the finest are made anew for each band when it is their turn
+    levels: list[Plane] = []
+    if min(nodes.rows, nodes.columns) > 4:
+        levels.append(_halved(links, nodes.rows, nodes.columns, each))
+        while min(levels[-1].shape[:2]) > 4:
+            fine = levels[-1]
+            levels.append(_halved(lambda low, high, fine=fine: fine[low:high], *fine.shape[:2], each))  # type: ignore[misc]
+    psi = np.zeros((0, 0, 2), np.float32)
+    for k, level in reversed(list(enumerate(levels))):
+        finer = np.empty((*level.shape[:2], 2), np.float32)
+
+        def band(low: int, level: Plane = level, finer: Plane = finer, psi: Plane = psi, k: int = k) -> None:
+            high, begin, end = _reach(low, len(level), COARSE_SWEEPS)
+            out = np.empty((end - begin, level.shape[1], 2), np.float32)
+            _phase.relax(level[begin:end], psi, begin, seed + k, COARSE_SWEEPS, out)
+            finer[low:high] = out[low - begin : high - begin]
+
+        each(band, range(0, len(level), BAND))
+        psi = finer
+        levels.pop()
+    phase = np.empty((nodes.rows, nodes.columns), np.float32)
+
+    def finest(low: int) -> None:
+        high, begin, end = _reach(low, nodes.rows, SWEEPS)
+        out = np.empty((end - begin, nodes.columns, 2), np.float32)
+        _phase.relax(links(begin, end), psi, begin, seed, SWEEPS, out)
+        _phase.turns(out[low - begin : high - begin], phase[low:high])
+
+    each(finest, range(0, nodes.rows, BAND))
+    return phase
+
+
+def _reach(low: int, rows: int, sweeps: int) -> tuple[int, int, int]:
+    """Where the band from row low ends, and the first and the end of the rows that are felt in it."""
+    high = min(low + BAND, rows)
+    margin = 2 * sweeps + 2
+    return high, max(low - margin, 0), min(high + margin, rows)
+
+
+def _halved(links: Callable[[int, int], Plane], rows: int, columns: int, each: Each) -> Plane:
+    """Links between every second node of a grid, from those of the grid itself, which are made band by band."""
+    out = np.empty(((rows + 1) // 2, (columns + 1) // 2, 6), np.float32)
+
+    def band(low: int) -> None:
+        _phase.coarsen(links(low, min(low + BAND, rows)), low, out)
+
+    each(band, range(0, rows, BAND))
+    return out
