@@ -23,7 +23,7 @@ PER_LINK = 16
 
 @dataclass(frozen=True, eq=False)
 class Lines:
-    """points: (p, 2); first: (n + 1,) line i owns points[first[i] : first[i + 1]]; ring: (n,) it ends where it began."""
+    """Polylines, as in `curves.Polylines`; those that end where they began are rings (n,)."""
 
     points: Floats
     first: Ints
@@ -87,9 +87,9 @@ def _joined(parts: list[tuple[Floats, Ints, Ints]], columns: int) -> Lines:
     chains = _chains(partner.tolist())
     # lines that are joined come after all others; a point on the row between two bands is in both
     whole = np.flatnonzero((partner.reshape(-1, 2) < 0).all(axis=1))
-    pieces = [np.arange(first[i], first[i + 1]) for i in ()]
-    sizes = []
-    closed = []
+    pieces: list[Ints] = []
+    sizes: list[int] = []
+    closed: list[bool] = []
     for chain, is_ring in chains:
         begin = len(pieces)
         for k, end in enumerate(chain):

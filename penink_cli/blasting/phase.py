@@ -89,8 +89,8 @@ def solve(field: Field, walls: Floats | None, seed: int, each: Each = one_by_one
     if min(nodes.rows, nodes.columns) > 4:
         levels.append(_halved(links, nodes.rows, nodes.columns, each))
         while min(levels[-1].shape[:2]) > 4:
-            fine = levels[-1]
-            levels.append(_halved(lambda low, high, fine=fine: fine[low:high], *fine.shape[:2], each))  # type: ignore[misc]
+            rows, columns = levels[-1].shape[:2]
+            levels.append(_halved(lambda low, high: levels[-1][low:high], rows, columns, each))
     psi = np.zeros((0, 0, 2), np.float32)
     for k, level in reversed(list(enumerate(levels))):
         finer = np.empty((*level.shape[:2], 2), np.float32)
