@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -167,8 +168,8 @@ def report_travel(before: Sequence[Strokes], after: Sequence[Strokes], speed: fl
     from penink_cli.travel.order import drawn_length, travel_length
 
     mm = 25.4 / 72
-    drawn = sum(map(drawn_length, after)) * mm
-    was, travelled = (sum(map(travel_length, layers)) * mm for layers in (before, after))
+    drawn = math.fsum(map(drawn_length, after)) * mm
+    was, travelled = (math.fsum(map(travel_length, layers)) * mm for layers in (before, after))
     count = sum(map(len, after))
     line = f"{count} strokes: {drawn / 1000:.2f} m drawn, {travelled / 1000:.2f} m travelled with the pen up"
     if before is not after:

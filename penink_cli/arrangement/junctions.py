@@ -203,5 +203,5 @@ def _taps(lens: float) -> Floats:
     fine = int(FINENESS)
     reach = min(fine * 5, math.ceil(fine * 2.5 * lens) + fine // 2)
     gauss = [math.exp(-0.5 * (d / (fine * lens)) ** 2) for d in range(-reach - 1, reach + 2)]
-    taps = [sum(gauss[k : k + fine]) for k in range(2 * reach + 1)]
-    return np.array(taps) / sum(taps)
+    taps = [math.fsum(gauss[k : k + fine]) for k in range(2 * reach + 1)]
+    return np.array(taps) / math.fsum(taps)

@@ -46,7 +46,7 @@ def blur_kernel(blur: float) -> Floats:
         return np.ones(1)
     reach = max(1, math.ceil(3.5 * blur))
     weights = [math.exp(-0.5 * (d / blur) ** 2) for d in range(reach + 1)]
-    whole = weights[0] + 2 * sum(weights[1:])
+    whole = weights[0] + 2 * math.fsum(weights[1:])
     return np.array([w / whole for w in weights])
 
 
