@@ -11,7 +11,7 @@ import os
 if _signal.getsignal(_signal.SIGINT) is _signal.default_int_handler:
     _signal.signal(_signal.SIGINT, _signal.SIG_DFL)
 
-from penink_cli import streams
+from penink_cli.ground import streams
 
 
 def main() -> None:

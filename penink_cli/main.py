@@ -20,8 +20,9 @@ import click
 if TYPE_CHECKING:
     from click.shell_completion import CompletionItem
 
-from penink_cli import __version__, streams
-from penink_cli.errors import PeninkError, printable
+from penink_cli import __version__
+from penink_cli.ground import streams
+from penink_cli.ground.errors import PeninkError, printable
 
 # Subcommand -> (module in penink_cli.commands, first line of its help). A table, so that neither
 # `penink --help` nor one subcommand pays for the imports of all others.

@@ -11,8 +11,9 @@ import tomllib
 import click
 import pytest
 
-from penink_cli import errors, options, units
+from penink_cli.ground import errors, units
 from penink_cli.main import PARTS, SUBCOMMANDS
+from penink_cli.options import common as options
 from penink_cli.reconstruction import lanes
 from tests.conftest import ROOT, environment
 

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from penink_cli.model import Strokes
+from penink_cli.ground.model import Strokes
 from tests.formats.test_strokes import drawings
 
 

@@ -12,8 +12,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from penink_cli import streams
-from penink_cli.errors import StreamError
+from penink_cli.ground import streams
+from penink_cli.ground.errors import StreamError
 
 
 def names(folder: Path) -> list[str]:

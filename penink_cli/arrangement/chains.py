@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from penink_cli.arrangement import _points
 from penink_cli.arrangement.gradient import EdgePoints
-from penink_cli.model import Floats
+from penink_cli.ground.model import Floats
 
 Ints32 = npt.NDArray[np.int32]
 

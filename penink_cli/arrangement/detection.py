@@ -18,7 +18,7 @@ from penink_cli.arrangement.junctions import settle_junctions
 from penink_cli.arrangement.planar import from_units, planar, to_units
 from penink_cli.arrangement.simplification import simplify
 from penink_cli.arrangement.smoothing import position_error, smooth, unbend
-from penink_cli.model import EdgeList, Floats
+from penink_cli.ground.model import EdgeList, Floats
 
 TOLERANCE = 0.3
 MIN_LENGTH = 6.0

@@ -14,8 +14,8 @@ import numpy as np
 import numpy.typing as npt
 
 from penink_cli.arrangement import _points
-from penink_cli.model import Floats
-from penink_cli.reconstruction import threads as threading
+from penink_cli.ground import threads as threading
+from penink_cli.ground.model import Floats
 
 Ints32 = npt.NDArray[np.int32]
 

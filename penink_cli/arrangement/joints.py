@@ -11,7 +11,7 @@ from penink_cli.arrangement import _points
 from penink_cli.arrangement.chains import Chains
 from penink_cli.arrangement.corners import crossing
 from penink_cli.arrangement.gradient import EdgePoints
-from penink_cli.model import Floats
+from penink_cli.ground.model import Floats
 
 Ints32 = npt.NDArray[np.int32]
 

@@ -27,8 +27,8 @@ from penink_cli.arrangement._planar import Planar
 from penink_cli.arrangement._regions import FINENESS
 from penink_cli.arrangement._settling import Settler
 from penink_cli.arrangement.planar import UNIT
-from penink_cli.model import Floats
-from penink_cli.reconstruction import threads as threading
+from penink_cli.ground import threads as threading
+from penink_cli.ground.model import Floats
 
 Ints32 = npt.NDArray[np.int32]
 # Vertices; the same and those at the other ends of short edges; how many pixels around those are looked at.

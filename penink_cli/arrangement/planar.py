@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from penink_cli.arrangement._planar import Planar
-from penink_cli.model import Floats, Ints
+from penink_cli.ground.model import Floats, Ints
 
 Ints32 = npt.NDArray[np.int32]
 

@@ -7,7 +7,7 @@ import numpy as np
 from penink_cli.arrangement import _curves
 from penink_cli.arrangement.chains import Chains
 from penink_cli.arrangement.gradient import EdgePoints
-from penink_cli.model import Floats
+from penink_cli.ground.model import Floats
 
 _OWN_ERROR = 0.01  # pixels: of a point in a picture without noise
 _SMOOTHEST, _ROUGHEST = 0.03, 2.0  # pixels: third difference of neighbouring points, on drawn curves and in fur

@@ -10,8 +10,8 @@ import numpy as np
 from penink_cli.blasting import hatching, tile
 from penink_cli.blasting.sheet import Sheet, resample
 from penink_cli.blasting.threshold import blast_by_threshold
-from penink_cli.errors import ParameterError
-from penink_cli.model import EdgeList, Floats, Strokes, Texture
+from penink_cli.ground.errors import ParameterError
+from penink_cli.ground.model import EdgeList, Floats, Strokes, Texture
 
 #: The rules by which strokes are chosen.
 RULES = ("best", "strict", "threshold")

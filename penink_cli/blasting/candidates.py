@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from penink_cli.blasting import curves, sweep, walls
 from penink_cli.blasting.sheet import SIGMA_PT, Cells, Sheet
-from penink_cli.model import Floats, HatchLayer, Ints, Strokes
+from penink_cli.ground.model import Floats, HatchLayer, Ints, Strokes
 
 #: Strokes are sampled at about this distance.
 STEP_PT = 1.5

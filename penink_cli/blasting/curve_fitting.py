@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from penink_cli.model import Floats
+from penink_cli.ground.model import Floats
 
 ROUNDS = 4  # of moving points along the curve before it is given up and split
 WORTH = 16.0  # squared error, in squared tolerances, from which those rounds are not tried

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from penink_cli.blasting import _curves
-from penink_cli.model import Floats, Ints
+from penink_cli.ground.model import Floats, Ints
 
 
 def ramp(counts: Ints) -> Ints:

@@ -19,7 +19,7 @@ import numpy as np
 from penink_cli.blasting import candidates, curves, thin, walls
 from penink_cli.blasting.shares import shares
 from penink_cli.blasting.sheet import Cells, Sheet
-from penink_cli.model import EdgeList, HatchLayer, Strokes
+from penink_cli.ground.model import EdgeList, HatchLayer, Strokes
 
 #: What a run of ink must gain, in cells × tone: less, and it is not worth a stroke.
 RUN_COST = 0.25

@@ -15,7 +15,7 @@ import numpy.typing as npt
 from penink_cli.blasting import curves
 from penink_cli.blasting._compiled import levels as _levels
 from penink_cli.blasting.phase import BAND, Each, Field, Plane, one_by_one
-from penink_cli.model import Floats, Ints
+from penink_cli.ground.model import Floats, Ints
 
 #: Crossings of one link that are told from each other in two bands that share it.
 PER_LINK = 16

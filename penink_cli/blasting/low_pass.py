@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from penink_cli.blasting import _due
-from penink_cli.model import Floats
+from penink_cli.ground.model import Floats
 
 Cells = npt.NDArray[np.float32]
 

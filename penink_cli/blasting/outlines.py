@@ -16,8 +16,8 @@ import numpy as np
 import numpy.typing as npt
 
 from penink_cli.blasting import curve_fitting, curves
-from penink_cli.model import EdgeList, Floats, Ints, OutlineChoice, Strokes
-from penink_cli.trails import trails
+from penink_cli.geometry.trails import trails
+from penink_cli.ground.model import EdgeList, Floats, Ints, OutlineChoice, Strokes
 
 TOLERANCE = 0.5  # pixels of the edge list that a curve may stray from its chain: about what edges are found to
 TOLERANCE_PT = 0.12  # or so much on paper, if that is more

@@ -13,7 +13,7 @@ import numpy.typing as npt
 from penink_cli.blasting import curves
 from penink_cli.blasting._compiled import lines as _lines
 from penink_cli.blasting.level_lines import Lines
-from penink_cli.model import Floats, Ints
+from penink_cli.ground.model import Floats, Ints
 
 #: Distance of a line's points, points on paper.
 STEP_PT = 1.0

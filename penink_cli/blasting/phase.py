@@ -23,7 +23,7 @@ import numpy as np
 import numpy.typing as npt
 
 from penink_cli.blasting._compiled import phase as _phase
-from penink_cli.model import Floats
+from penink_cli.ground.model import Floats
 
 Plane: TypeAlias = npt.NDArray[np.float32]
 #: Runs a function over each of some items, on threads or not.

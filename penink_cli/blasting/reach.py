@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from penink_cli.blasting import tile
-from penink_cli.model import Texture
+from penink_cli.ground.model import Texture
 
 
 def reachable(texture: Texture, gain_pt: float) -> tuple[float, float]:

@@ -25,8 +25,8 @@ import numpy as np
 import numpy.typing as npt
 
 from penink_cli.blasting.tile import thresholds
-from penink_cli.model import Floats, HatchLayer, Ints, Texture
-from penink_cli.textures.even import direction
+from penink_cli.ground.angles import direction
+from penink_cli.ground.model import Floats, HatchLayer, Ints, Texture
 
 Bytes = npt.NDArray[np.uint8]
 Integers = npt.NDArray[np.int32]

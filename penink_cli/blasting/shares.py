@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from penink_cli.model import Floats, HatchLayer
+from penink_cli.ground.model import Floats, HatchLayer
 
 #: Where a layer sets in, the one before it gives way by this part of what it has brought, and so the new one begins
 #: with lines near enough to each other to be seen as a layer; by this much more tone it has come back.

@@ -27,7 +27,7 @@ import numpy.typing as npt
 from penink_cli.blasting import _ink, _place, _press
 from penink_cli.blasting.curves import Polylines
 from penink_cli.blasting.low_pass import Cells, LowPass
-from penink_cli.model import Floats, Ints
+from penink_cli.ground.model import Floats, Ints
 
 CELL_PT = 0.96
 #: σ of the low-pass of what is due. Narrower than what the eye (and the measure) blurs,

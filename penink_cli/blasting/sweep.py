@@ -22,8 +22,8 @@ import numpy.typing as npt
 
 from penink_cli.blasting import _sweep, curves
 from penink_cli.blasting.sheet import Sheet
-from penink_cli.model import Floats, HatchLayer, Ints
-from penink_cli.textures.even import direction
+from penink_cli.ground.angles import direction
+from penink_cli.ground.model import Floats, HatchLayer, Ints
 
 COLUMN_PT = 2.0  # along the hatch
 ROW_PT = 1.0  # across it

@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from penink_cli.blasting import curves, walls
 from penink_cli.blasting.sheet import Cells, Sheet
-from penink_cli.model import Floats, Ints, Strokes
+from penink_cli.ground.model import Floats, Ints, Strokes
 
 #: How much darker a crest must be than what lies beside it on either side, on its own and on the mean of a line.
 CONTRAST, MEAN_CONTRAST = 0.05, 0.09

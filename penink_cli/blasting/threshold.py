@@ -18,8 +18,8 @@ import numpy.typing as npt
 from penink_cli.blasting import _threshold, curves
 from penink_cli.blasting.screens import WIDENED_PT, Screen, ThresholdTable, table
 from penink_cli.blasting.sheet import resample
-from penink_cli.model import EdgeList, Floats, Ints, Strokes, Texture
-from penink_cli.textures.even import direction
+from penink_cli.ground.angles import direction
+from penink_cli.ground.model import EdgeList, Floats, Ints, Strokes, Texture
 
 BLOCKS = 9.0  # units: side of the blocks in which ink is compared with tone
 GAP, SHORT, DEEP = 3, 3.0, 24.0

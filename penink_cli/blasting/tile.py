@@ -9,7 +9,7 @@ import numpy as np
 
 from penink_cli.blasting import curves, walls
 from penink_cli.blasting.sheet import SIGMA_PT, Cells, Sheet
-from penink_cli.model import EdgeList, Floats, Ints, Strokes, Texture
+from penink_cli.ground.model import EdgeList, Floats, Ints, Strokes, Texture
 
 #: What a run of ink must gain, in cells × tone.
 RUN_COST = 0.3

@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from penink_cli.blasting import _walls, curves
 from penink_cli.blasting.sheet import STEP, Sheet
-from penink_cli.model import EdgeList, Floats, Ints
+from penink_cli.ground.model import EdgeList, Floats, Ints
 
 CELL_PT = 6.0
 #: Steps of tone at which an edge is a wall, and at which it is one if it goes on from a wall: those over which ink is

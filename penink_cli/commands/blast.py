@@ -6,9 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from penink_cli.commands.inputs import only_one_standard_input, read_edges, read_grey
-from penink_cli.layer_options import read_layers
-from penink_cli.options import (
+from penink_cli.ground.streams import writing
+from penink_cli.options.common import (
     LENGTH,
     POSITIVE,
     DeviceDpi,
@@ -21,13 +20,14 @@ from penink_cli.options import (
     verbose_option,
     warn,
 )
-from penink_cli.papers import check_sheet
-from penink_cli.progress import progress
-from penink_cli.streams import writing
-from penink_cli.texture_options import find_texture, texture_option
+from penink_cli.options.inputs import only_one_standard_input, read_edges, read_grey
+from penink_cli.options.layers import read_layers
+from penink_cli.options.progress import progress
+from penink_cli.options.sheet import check_sheet
+from penink_cli.options.textures import find_texture, texture_option
 
 if TYPE_CHECKING:
-    from penink_cli.model import Floats, Texture
+    from penink_cli.ground.model import Floats, Texture
 
 RULES = ("best", "strict", "threshold")
 
@@ -102,9 +102,9 @@ def blast(
     """
     from penink_cli.blasting.blast import TICKS
     from penink_cli.blasting.blast import blast as blast_tone
-    from penink_cli.drawing import tone_curve
     from penink_cli.formats import strokes as strokes_format
-    from penink_cli.model import Strokes
+    from penink_cli.ground.model import Strokes
+    from penink_cli.illustration.drawing import tone_curve
 
     if (width is None) == (dpi is None):
         raise click.UsageError("give one of --width and --dpi")

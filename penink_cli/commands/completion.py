@@ -6,8 +6,8 @@ from typing import Any
 
 import click
 
-from penink_cli.options import output_options
-from penink_cli.streams import writing
+from penink_cli.ground.streams import writing
+from penink_cli.options.common import output_options
 
 
 @click.command(name="completion")

@@ -6,9 +6,9 @@ from typing import Any
 
 import click
 
-from penink_cli.commands.inputs import read_photo
-from penink_cli.options import POSITIVE, Finite, filter_options, reporter, verbose_option
-from penink_cli.streams import writing
+from penink_cli.ground.streams import writing
+from penink_cli.options.common import POSITIVE, Finite, filter_options, reporter, verbose_option
+from penink_cli.options.inputs import read_photo
 
 STEP = Finite(most=1, above=0)
 

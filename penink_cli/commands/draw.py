@@ -13,9 +13,9 @@ import click
 from click.core import ParameterSource
 
 from penink_cli.commands.blast import warnings
-from penink_cli.commands.inputs import read_photo
-from penink_cli.errors import in_quotes
-from penink_cli.options import (
+from penink_cli.ground.errors import in_quotes
+from penink_cli.ground.streams import writing
+from penink_cli.options.common import (
     LENGTH,
     DeviceDpi,
     Finite,
@@ -25,12 +25,12 @@ from penink_cli.options import (
     verbose_option,
     warn,
 )
-from penink_cli.papers import check_sheet
-from penink_cli.streams import writing
-from penink_cli.texture_options import find_texture, texture_option
+from penink_cli.options.inputs import read_photo
+from penink_cli.options.sheet import check_sheet
+from penink_cli.options.textures import find_texture, texture_option
 
 if TYPE_CHECKING:
-    from penink_cli.model import Illustration, OutlineChoice, Strokes
+    from penink_cli.ground.model import Illustration, OutlineChoice, Strokes
 
 OUTLINE_PEN_PT = 0.7
 OUTLINE_STRENGTH = 0.2  # the grey step that is worth an outline
@@ -82,9 +82,9 @@ def draw(
     penink draw photo.jpg -o photo.pdf
     penink draw photo.jpg --width 24in --device-dpi 1200 | lpr
     """
-    from penink_cli import drawing
-    from penink_cli.model import Illustration, Layer, OutlineChoice
-    from penink_cli.progress import progress
+    from penink_cli.ground.model import Illustration, Layer, OutlineChoice
+    from penink_cli.illustration import drawing
+    from penink_cli.options.progress import progress
 
     ending = os.path.splitext(output or "-")[1].lower() or ".ps"  # a FIFO or device has no ending
     if ending not in WRITERS:
@@ -132,8 +132,8 @@ def draw(
 
 
 def _write_ps(output: str | None, layers: Sequence[Strokes]) -> None:
-    from penink_cli.formats import postscript
-    from penink_cli.formats.page import lay_out
+    from penink_cli.outputs import postscript
+    from penink_cli.outputs.page import lay_out
     from penink_cli.travel.order import ordered
 
     with writing(output, binary=False) as out:
@@ -141,24 +141,24 @@ def _write_ps(output: str | None, layers: Sequence[Strokes]) -> None:
 
 
 def _write_svg(output: str | None, layers: Sequence[Strokes]) -> None:
-    from penink_cli.formats import svg
-    from penink_cli.formats.page import lay_out
+    from penink_cli.outputs import svg
+    from penink_cli.outputs.page import lay_out
 
     with writing(output, binary=False) as out:
         svg.write(out, layers, lay_out(layers))
 
 
 def _write_pdf(output: str | None, layers: Sequence[Strokes]) -> None:
-    from penink_cli.formats import pdf
-    from penink_cli.formats.page import lay_out
+    from penink_cli.outputs import pdf
+    from penink_cli.outputs.page import lay_out
 
     with writing(output) as out:
         pdf.write(out, layers, lay_out(layers))
 
 
 def _write_png(output: str | None, layers: Sequence[Strokes]) -> None:
-    from penink_cli.formats.page import lay_out
-    from penink_cli.formats.raster import cover, png
+    from penink_cli.outputs.page import lay_out
+    from penink_cli.outputs.raster import cover, png
 
     page = lay_out(layers)
     with writing(output) as out:
@@ -167,16 +167,16 @@ def _write_png(output: str | None, layers: Sequence[Strokes]) -> None:
 
 def _write_strokes(output: str | None, layers: Sequence[Strokes]) -> None:
     from penink_cli.formats import strokes
-    from penink_cli.model import Strokes
+    from penink_cli.ground.model import Strokes
 
     with writing(output, binary=False) as out:
         strokes.write(out, Strokes.joined(layers))
 
 
 def _write_illustration(output: str | None, illustration: Illustration) -> None:
-    from penink_cli.commands.inputs import settled
     from penink_cli.formats import archive
     from penink_cli.formats import illustration as illustration_format
+    from penink_cli.options.inputs import settled
 
     with writing(output) as out:
         out.write(archive.pack(illustration_format.members(settled(illustration))))
@@ -201,7 +201,7 @@ def _chain(
     choice: OutlineChoice | None, shape: tuple[int, int],
 ) -> list[str]:  # fmt: skip
     """The filters whose chain gives the same bytes, as one would type them."""
-    from penink_cli.drawing import grey_size
+    from penink_cli.illustration.drawing import grey_size
 
     photo = shlex.quote(file or "-")
     size = grey_size(options["width"], shape[0] / shape[1])

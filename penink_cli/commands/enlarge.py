@@ -6,9 +6,9 @@ import math
 
 import click
 
-from penink_cli.commands.inputs import only_one_standard_input, read_edges, read_grey
-from penink_cli.options import POSITIVE, SIZE, WINDOW, edges_option, filter_options, threads_option
-from penink_cli.streams import writing
+from penink_cli.ground.streams import writing
+from penink_cli.options.common import POSITIVE, SIZE, WINDOW, edges_option, filter_options, threads_option
+from penink_cli.options.inputs import only_one_standard_input, read_edges, read_grey
 
 MOST = 2**31 - 1  # pixels along a side of the output
 
@@ -60,7 +60,7 @@ def enlarge(
     penink enlarge -e photo.edges.json --scale 8 photo.reduced.pgm > photo.large.pgm
     """
     from penink_cli.formats import pgm
-    from penink_cli.progress import progress
+    from penink_cli.options.progress import progress
     from penink_cli.reconstruction.enlarge import bands, check_window
 
     if (scale is None) == (size is None):

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import click
 
-from penink_cli.commands.inputs import only_one_standard_input, read_edges, read_photo, warn_of_another_shape
-from penink_cli.options import Finite, edges_option, filter_options, reporter, verbose_option
-from penink_cli.streams import writing
+from penink_cli.ground.streams import writing
+from penink_cli.options.common import Finite, edges_option, filter_options, reporter, verbose_option
+from penink_cli.options.inputs import only_one_standard_input, read_edges, read_photo, warn_of_another_shape
 
 
 @click.command(name="extract-samples")
@@ -38,7 +38,7 @@ def extract_samples(
     penink extract-samples -e photo.edges.json photo.png -o photo.samples.pgm
     """
     from penink_cli.formats import pgm
-    from penink_cli.model import GreyImage
+    from penink_cli.ground.model import GreyImage
     from penink_cli.reconstruction import extraction
 
     only_one_standard_input(file, edges_file)

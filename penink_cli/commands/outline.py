@@ -6,10 +6,10 @@ from typing import Any
 
 import click
 
-from penink_cli.commands.inputs import read_edges
-from penink_cli.errors import in_quotes
-from penink_cli.options import LENGTH, DeviceDpi, Finite, filter_options
-from penink_cli.streams import writing
+from penink_cli.ground.errors import in_quotes
+from penink_cli.ground.streams import writing
+from penink_cli.options.common import LENGTH, DeviceDpi, Finite, filter_options
+from penink_cli.options.inputs import read_edges
 
 
 class Point(click.ParamType):
@@ -84,10 +84,10 @@ def outline(
     penink outline --width 4in --min-strength 0.2 photo.edges.json > outlines.strokes.jsonl
     penink to-ps hatching.strokes.jsonl outlines.strokes.jsonl -o photo.ps
     """
-    from penink_cli.drawing import outline_strokes
     from penink_cli.formats import strokes
-    from penink_cli.model import OutlineChoice
-    from penink_cli.papers import check_sheet
+    from penink_cli.ground.model import OutlineChoice
+    from penink_cli.illustration.drawing import outline_strokes
+    from penink_cli.options.sheet import check_sheet
 
     edges = read_edges(file or "-", max_pixels)
     assert edges is not None  # which it is only where no file is named

@@ -4,9 +4,23 @@ from __future__ import annotations
 
 import click
 
-from penink_cli.commands.inputs import only_one_standard_input, read_edges, read_grey, read_photo, warn_of_another_shape
-from penink_cli.options import SIZE, Finite, edges_option, filter_options, reporter, threads_option, verbose_option
-from penink_cli.streams import writing
+from penink_cli.ground.streams import writing
+from penink_cli.options.common import (
+    SIZE,
+    Finite,
+    edges_option,
+    filter_options,
+    reporter,
+    threads_option,
+    verbose_option,
+)
+from penink_cli.options.inputs import (
+    only_one_standard_input,
+    read_edges,
+    read_grey,
+    read_photo,
+    warn_of_another_shape,
+)
 
 
 @click.command(name="reduce")
@@ -63,9 +77,9 @@ def reduce(
     penink extract-samples -e photo.edges.json photo.png \\
       | penink reduce -e photo.edges.json --photo photo.png --factor 4 -o photo.reduced.pgm
     """
-    from penink_cli.errors import ParameterError
     from penink_cli.formats import pgm
-    from penink_cli.model import EdgeList, GreyImage
+    from penink_cli.ground.errors import ParameterError
+    from penink_cli.ground.model import EdgeList, GreyImage
     from penink_cli.reconstruction import grid, reduction
 
     if (factor is not None) + (size is not None) + auto != 1:

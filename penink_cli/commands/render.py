@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING
 
 import click
 
-from penink_cli.commands.inputs import read_illustration
-from penink_cli.errors import ParameterError, printable
-from penink_cli.options import LENGTH, POSITIVE, DeviceDpi, filter_options, processors, threads_option
-from penink_cli.papers import check_sheet
-from penink_cli.streams import writing
+from penink_cli.ground.errors import ParameterError, printable
+from penink_cli.ground.streams import writing
+from penink_cli.options.common import LENGTH, POSITIVE, DeviceDpi, filter_options, processors, threads_option
+from penink_cli.options.inputs import read_illustration
+from penink_cli.options.sheet import check_sheet
 
 if TYPE_CHECKING:
-    from penink_cli.model import Illustration
+    from penink_cli.ground.model import Illustration
 
 
 @click.command()
@@ -64,9 +64,9 @@ def render(
     penink render keys.penink --width 24in --device-dpi 1200 | penink to-ps -o poster.eps
     """
     from penink_cli.formats import strokes
-    from penink_cli.layering import layer_strokes, steps
-    from penink_cli.model import Strokes
-    from penink_cli.progress import progress
+    from penink_cli.ground.model import Strokes
+    from penink_cli.illustration.layering import layer_strokes, steps
+    from penink_cli.options.progress import progress
 
     if width is not None and scale is not None:
         raise click.UsageError("give one of --width and --scale")

@@ -6,11 +6,11 @@ from typing import Any
 
 import click
 
-from penink_cli.commands.inputs import only_one_standard_input, read_edges, read_photo, warn_of_another_shape
 from penink_cli.commands.outline import Point
-from penink_cli.errors import in_quotes
-from penink_cli.options import edges_option, filter_options, plain_number
-from penink_cli.streams import writing
+from penink_cli.ground.errors import in_quotes
+from penink_cli.ground.streams import writing
+from penink_cli.options.common import edges_option, filter_options, plain_number
+from penink_cli.options.inputs import only_one_standard_input, read_edges, read_photo, warn_of_another_shape
 
 
 class Range(click.ParamType):
@@ -66,8 +66,8 @@ def separate(
     penink separate keys.png --mask keys-mask.png -o keys.pgm
     penink separate keys.png --mask keys-mask.png --invert -o shadow.pgm
     """
-    from penink_cli import overlays
     from penink_cli.formats import pgm
+    from penink_cli.illustration import overlays
 
     if (mask is not None) + (grey is not None) + bool(points) != 1:
         raise click.UsageError("give one of --mask, --grey and --point")

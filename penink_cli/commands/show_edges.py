@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import click
 
-from penink_cli.commands.inputs import only_one_standard_input, read_edges, read_photo, warn_of_another_shape
-from penink_cli.options import POSITIVE, Finite, edges_option, filter_options
-from penink_cli.streams import writing
+from penink_cli.ground.streams import writing
+from penink_cli.options.common import POSITIVE, Finite, edges_option, filter_options
+from penink_cli.options.inputs import only_one_standard_input, read_edges, read_photo, warn_of_another_shape
 
 
 @click.command(name="show-edges")
@@ -31,7 +31,7 @@ def show_edges(
     \b
     penink show-edges -e photo.edges.json photo.png -o photo.edges.svg
     """
-    from penink_cli.formats import edge_picture
+    from penink_cli.outputs import edge_picture
     from penink_cli.reconstruction import extraction
 
     only_one_standard_input(file, edges_file)

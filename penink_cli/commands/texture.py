@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from penink_cli.errors import ParameterError
-from penink_cli.options import LENGTH, DeviceDpi, Finite, Length, output_options, warn
-from penink_cli.streams import reading, source_name, writing
-from penink_cli.texture_options import TEXTURE, find_texture, shipped
+from penink_cli.ground.errors import ParameterError
+from penink_cli.ground.streams import reading, source_name, writing
+from penink_cli.options.common import LENGTH, DeviceDpi, Finite, Length, output_options, warn
+from penink_cli.options.textures import TEXTURE, find_texture, shipped
 from penink_cli.textures.kinds import KINDS
 
 if TYPE_CHECKING:
-    from penink_cli.model import Texture
+    from penink_cli.ground.model import Texture
 
 
 @click.group(name="texture")

@@ -6,9 +6,9 @@ from typing import Any
 
 import click
 
-from penink_cli.commands.inputs import read_illustration
-from penink_cli.options import filter_options
-from penink_cli.streams import writing
+from penink_cli.ground.streams import writing
+from penink_cli.options.common import filter_options
+from penink_cli.options.inputs import read_illustration
 
 
 @click.command(name="to-html")

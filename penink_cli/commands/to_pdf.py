@@ -6,7 +6,9 @@ from typing import Any
 
 import click
 
-from penink_cli.layer_options import (
+from penink_cli.ground.streams import writing
+from penink_cli.options.common import output_options
+from penink_cli.options.layers import (
     as_printed,
     colour_option,
     files_argument,
@@ -14,8 +16,6 @@ from penink_cli.layer_options import (
     page_options,
     read_layers,
 )
-from penink_cli.options import output_options
-from penink_cli.streams import writing
 
 
 @click.command(name="to-pdf")
@@ -43,8 +43,8 @@ def to_pdf(
     penink to-pdf photo.strokes.jsonl -o photo.pdf
     penink to-pdf --paper letter --margin 0.5in photo.strokes.jsonl -o photo.pdf
     """
-    from penink_cli.formats import pdf
-    from penink_cli.formats.page import lay_out
+    from penink_cli.outputs import pdf
+    from penink_cli.outputs.page import lay_out
 
     layers = as_printed(read_layers(files), device_dpi)
     page = lay_out(layers, paper, margin, landscape)

@@ -6,11 +6,11 @@ from typing import Any
 
 import click
 
-from penink_cli.errors import ParameterError
-from penink_cli.layer_options import as_printed, files_argument, gain_option, page_options, read_layers
-from penink_cli.options import Finite, output_options, processors, threads_option
-from penink_cli.progress import progress
-from penink_cli.streams import writing
+from penink_cli.ground.errors import ParameterError
+from penink_cli.ground.streams import writing
+from penink_cli.options.common import Finite, output_options, processors, threads_option
+from penink_cli.options.layers import as_printed, files_argument, gain_option, page_options, read_layers
+from penink_cli.options.progress import progress
 
 
 def _pixels(
@@ -27,9 +27,9 @@ def _pixels(
     quiet: bool,
     png: bool,
 ) -> None:
-    from penink_cli.formats.page import lay_out
     from penink_cli.formats.pgm import check_size
-    from penink_cli.formats.raster import cover
+    from penink_cli.outputs.page import lay_out
+    from penink_cli.outputs.raster import cover
 
     layers = as_printed(read_layers(files), device_dpi)
     page = lay_out(layers, paper, margin, landscape)
@@ -46,7 +46,7 @@ def _pixels(
                 done(len(band))
 
         if png:
-            from penink_cli.formats.raster import png as png_file
+            from penink_cli.outputs.raster import png as png_file
 
             png_file.write(out, (width, height), dpi, bits, bands())
         else:

@@ -6,9 +6,9 @@ from typing import Any
 
 import click
 
-from penink_cli.layer_options import colour_option, files_argument, page_options, read_layers
-from penink_cli.options import Finite, output_options
-from penink_cli.streams import writing
+from penink_cli.ground.streams import writing
+from penink_cli.options.common import Finite, output_options
+from penink_cli.options.layers import colour_option, files_argument, page_options, read_layers
 
 
 @click.command(name="to-ps")
@@ -63,13 +63,13 @@ def to_ps(
         return
     from functools import partial
 
-    from penink_cli.formats import postscript
-    from penink_cli.formats.page import lay_out
+    from penink_cli.outputs import postscript
+    from penink_cli.outputs.page import lay_out
     from penink_cli.travel.order import ordered
 
     layers = read_layers(files)
     if device_dpi is not None:
-        from penink_cli.formats.gain import narrowed
+        from penink_cli.ground.gain import narrowed
 
         layers = [narrowed(layer, device_dpi) for layer in layers]
     page = lay_out(layers, paper, margin, landscape)
@@ -79,7 +79,7 @@ def to_ps(
 
 def write_self_drawing(files: tuple[str, ...], output: str | None, packing: str, max_pixels: int) -> None:
     """The illustration in the one file given as an EPS that draws itself."""
-    from penink_cli.commands.inputs import read_illustration
+    from penink_cli.options.inputs import read_illustration
     from penink_cli.selfdrawing import postscript as selfdrawing
 
     if len(files) > 1:

@@ -6,7 +6,9 @@ from typing import Any
 
 import click
 
-from penink_cli.layer_options import (
+from penink_cli.ground.streams import writing
+from penink_cli.options.common import output_options, verbose_option
+from penink_cli.options.layers import (
     as_printed,
     colour_option,
     files_argument,
@@ -17,8 +19,6 @@ from penink_cli.layer_options import (
     report_travel,
     travel_options,
 )
-from penink_cli.options import output_options, verbose_option
-from penink_cli.streams import writing
 
 
 @click.command(name="to-svg")
@@ -54,8 +54,8 @@ def to_svg(
     penink to-svg photo.strokes.jsonl -o photo.svg
     penink to-svg --order --speed 50mm --paper a4 --margin 1cm photo.strokes.jsonl -o photo.svg
     """
-    from penink_cli.formats import svg
-    from penink_cli.formats.page import lay_out
+    from penink_cli.outputs import svg
+    from penink_cli.outputs.page import lay_out
 
     layers = as_printed(read_layers(files), device_dpi)
     page = lay_out(layers, paper, margin, landscape)

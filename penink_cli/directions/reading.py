@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from penink_cli.model import Directions, EdgeList
+from penink_cli.ground.model import Directions, EdgeList
 from penink_cli.reconstruction.enlarge import Window, check_window, reconstruct
 
 NOTHING = 1e-6  # a vector shorter than this has no direction

@@ -14,7 +14,7 @@ import struct
 import zipfile
 import zlib
 
-from penink_cli.errors import FormatError, LimitError, printable
+from penink_cli.ground.errors import FormatError, LimitError, printable
 
 MAX_BYTES = 1 << 26  # of the archive, and of all members together
 MAX_MEMBERS = 300

@@ -22,11 +22,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from penink_cli.errors import FormatError, LimitError
 from penink_cli.formats import edge_list
 from penink_cli.formats._compact import Coder
-from penink_cli.model import EdgeList, GreyImage, Ints
-from penink_cli.trails import trails
+from penink_cli.geometry.trails import trails
+from penink_cli.ground.errors import FormatError, LimitError
+from penink_cli.ground.model import EdgeList, GreyImage, Ints
 
 SAMPLES, EDGES, TEXT = b"PIs1", b"PIe1", b"PIt1"
 

@@ -6,7 +6,7 @@ import re
 import struct
 import zlib
 
-from penink_cli.errors import FormatError, printable
+from penink_cli.ground.errors import FormatError, printable
 
 BAND = 1 << 20  # bytes inflated at a time
 

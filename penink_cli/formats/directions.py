@@ -8,12 +8,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, BinaryIO
 
-from penink_cli.errors import FormatError, PeninkError, in_quotes
 from penink_cli.formats import pgm
-from penink_cli.model import Directions, GreyImage
+from penink_cli.ground.errors import FormatError, PeninkError, in_quotes
+from penink_cli.ground.model import Directions, GreyImage
 
 if TYPE_CHECKING:
-    from penink_cli.streams import Output
+    from penink_cli.ground.streams import Output
 
 PLANES = ("cos 2θ", "sin 2θ", "confidence")
 MAXVAL = 254  # as written: even, so that 0, ±½ and ±1 are levels

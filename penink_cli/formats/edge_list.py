@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING, BinaryIO
 
 import numpy as np
 
-from penink_cli.errors import FormatError, LimitError
 from penink_cli.formats import strict_json
-from penink_cli.model import EdgeList, Floats, Ints
+from penink_cli.ground.errors import FormatError, LimitError
+from penink_cli.ground.model import EdgeList, Floats, Ints
 
 if TYPE_CHECKING:
-    from penink_cli.streams import Output
+    from penink_cli.ground.streams import Output
 
 FORMAT = "penink-edges"
 DECIMALS = 4  # of coordinates and strengths, as written: a ten-thousandth of a pixel

@@ -18,10 +18,10 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
-from penink_cli.errors import FormatError, LimitError, PeninkError
 from penink_cli.formats import compact, edge_list, pgm, strict_json
 from penink_cli.formats import texture as texture_format
-from penink_cli.model import EdgeList, GreyImage, Illustration, Layer, OutlineChoice, Texture
+from penink_cli.ground.errors import FormatError, LimitError, PeninkError
+from penink_cli.ground.model import EdgeList, GreyImage, Illustration, Layer, OutlineChoice, Texture
 
 FORMAT = "penink-illustration"
 MANIFEST = "illustration.json"  # its name within an archive

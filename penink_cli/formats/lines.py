@@ -15,12 +15,12 @@ from typing import TYPE_CHECKING, Any, BinaryIO
 
 import numpy as np
 
-from penink_cli.errors import FormatError, LimitError
 from penink_cli.formats import strict_json
-from penink_cli.model import Floats, Lines
+from penink_cli.ground.errors import FormatError, LimitError
+from penink_cli.ground.model import Floats, Lines
 
 if TYPE_CHECKING:
-    from penink_cli.streams import Output
+    from penink_cli.ground.streams import Output
 
 FORMAT = "penink-lines"
 DECIMALS = 2  # of coordinates, breadths and ranks, as written

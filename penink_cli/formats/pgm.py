@@ -16,11 +16,11 @@ from typing import TYPE_CHECKING, Any, BinaryIO
 import numpy as np
 import numpy.typing as npt
 
-from penink_cli.errors import FormatError, LimitError, in_quotes
-from penink_cli.model import GreyImage
+from penink_cli.ground.errors import FormatError, LimitError, in_quotes
+from penink_cli.ground.model import GreyImage
 
 if TYPE_CHECKING:
-    from penink_cli.streams import Output
+    from penink_cli.ground.streams import Output
 
 Values = npt.NDArray[Any]  # uint8 where maxval < 256, else uint16
 

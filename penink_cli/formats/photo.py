@@ -21,10 +21,10 @@ from typing import TYPE_CHECKING, Any, BinaryIO
 import numpy as np
 import numpy.typing as npt
 
-from penink_cli.errors import FormatError, LimitError, PeninkError, in_quotes, printable
 from penink_cli.formats import damage, pgm
 from penink_cli.formats.signatures import SIGNATURES
-from penink_cli.model import ColourImage, GreyImage
+from penink_cli.ground.errors import FormatError, LimitError, PeninkError, in_quotes, printable
+from penink_cli.ground.model import ColourImage, GreyImage
 
 if TYPE_CHECKING:
     from PIL import Image

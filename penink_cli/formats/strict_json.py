@@ -16,8 +16,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from penink_cli.errors import FormatError, printable
-from penink_cli.model import Floats, Ints
+from penink_cli.ground.errors import FormatError, printable
+from penink_cli.ground.model import Floats, Ints
 
 _LONG = re.compile(rb"[0-9]{309}")  # digits: the shortest integer that may be beyond a double
 _HALF_SURROGATE = re.compile(rb"\\u[dD][89a-fA-F]")

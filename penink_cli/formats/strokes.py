@@ -25,9 +25,9 @@ from typing import Any, BinaryIO, Protocol
 
 import numpy as np
 
-from penink_cli.errors import FormatError, LimitError, ParameterError
 from penink_cli.formats import _plain_json, _stroke_lines, strict_json
-from penink_cli.model import Strokes
+from penink_cli.ground.errors import FormatError, LimitError, ParameterError
+from penink_cli.ground.model import Strokes
 
 LIMIT = 1e7  # points; 3.5 km. Keeps thousandths exact and every format's integers within 32 bits
 MAX_LINE = 16 << 20

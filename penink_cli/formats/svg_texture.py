@@ -9,9 +9,9 @@ from xml.etree.ElementTree import ParseError
 
 import numpy as np
 
-from penink_cli.errors import FormatError
 from penink_cli.formats.strokes import LIMIT
-from penink_cli.model import Floats, Strokes, Texture
+from penink_cli.ground.errors import FormatError
+from penink_cli.ground.model import Floats, Strokes, Texture
 
 MAX_BYTES = 64 << 20
 MAX_STROKES = 500_000

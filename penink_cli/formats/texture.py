@@ -18,10 +18,10 @@ from typing import Any, BinaryIO
 
 import numpy as np
 
-from penink_cli.errors import FormatError
 from penink_cli.formats import strict_json
 from penink_cli.formats.strokes import LIMIT, Sink
-from penink_cli.model import Floats, HatchLayer, Ints, Strokes, Texture
+from penink_cli.ground.errors import FormatError
+from penink_cli.ground.model import Floats, HatchLayer, Ints, Strokes, Texture
 
 MAX_BYTES = 64 << 20
 

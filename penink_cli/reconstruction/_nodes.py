@@ -10,7 +10,7 @@ one test replaces "within the sector" and prunes nearly all bends of a smooth ch
 import cython
 from cython.cimports.libc.math import sqrt
 from cython.cimports.libc.stdlib import free, malloc, realloc
-from cython.cimports.penink_cli.arrangement._predicates import orient
+from cython.cimports.penink_cli.geometry._predicates import orient
 from cython.cimports.penink_cli.reconstruction._scene import BLOCK, Scene, doubles, ints
 
 COMPILED = cython.compiled

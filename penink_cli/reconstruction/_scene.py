@@ -8,7 +8,7 @@ on a vertex or in line with one; a tie goes by the sign of the next power of ε.
 
 import cython
 from cython.cimports.libc.stdlib import free
-from cython.cimports.penink_cli.arrangement._predicates import orient
+from cython.cimports.penink_cli.geometry._predicates import orient
 
 COMPILED = cython.compiled
 

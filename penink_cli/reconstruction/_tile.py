@@ -4,7 +4,7 @@
 import cython
 from cython.cimports.libc.stdlib import free
 from cython.cimports.libc.string import memset
-from cython.cimports.penink_cli.arrangement._predicates import orient
+from cython.cimports.penink_cli.geometry._predicates import orient
 from cython.cimports.penink_cli.reconstruction._lanes import lowest
 from cython.cimports.penink_cli.reconstruction._search import Finder
 from cython.cimports.penink_cli.reconstruction._surroundings import Surroundings, zeros

@@ -9,7 +9,7 @@ near a line to tell in single precision are decided by the exact predicates.
 import cython
 from cython.cimports.libc.math import ceil, fabs, fabsf, floor, sqrt
 from cython.cimports.libc.stdlib import free, malloc, realloc
-from cython.cimports.penink_cli.arrangement._predicates import orient
+from cython.cimports.penink_cli.geometry._predicates import orient
 from cython.cimports.penink_cli.reconstruction._lanes import Four, above_four, all_four, four_at, lowest
 from cython.cimports.penink_cli.reconstruction._scene import BLOCK, Scene
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from penink_cli.model import EdgeList, Floats
+from penink_cli.ground.model import EdgeList, Floats
 
 LEAST_BLUR, MOST_BLUR = 0.4, 3.0
 USUAL_BLUR = 0.5  # pixels: a photo with too few edges to tell

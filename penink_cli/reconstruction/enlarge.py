@@ -15,10 +15,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from penink_cli.errors import ParameterError
-from penink_cli.model import EdgeList, Floats, GreyImage
+from penink_cli.ground import threads as threading
+from penink_cli.ground.errors import ParameterError
+from penink_cli.ground.model import EdgeList, Floats, GreyImage
 from penink_cli.reconstruction import _desk, _render, _search, _shade, _tile, _weights, lanes, paths
-from penink_cli.reconstruction import threads as threading
 from penink_cli.reconstruction.kernels import is_bspline, taps
 from penink_cli.reconstruction.lattice import TILE, Axis, axis, centres
 from penink_cli.reconstruction.paths import Paths, reach, spill

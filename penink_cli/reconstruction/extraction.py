@@ -13,9 +13,9 @@ from collections.abc import Callable
 import numpy as np
 import numpy.typing as npt
 
-from penink_cli.model import EdgeList, Floats
+from penink_cli.ground import threads as threading
+from penink_cli.ground.model import EdgeList, Floats
 from penink_cli.reconstruction import _clean, _walls
-from penink_cli.reconstruction import threads as threading
 from penink_cli.reconstruction.camera import camera_blur
 
 _SPREAD = 1.5

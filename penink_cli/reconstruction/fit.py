@@ -20,9 +20,9 @@ from functools import partial
 import numpy as np
 import numpy.typing as npt
 
-from penink_cli.model import EdgeList, Floats
+from penink_cli.ground import threads as threading
+from penink_cli.ground.model import EdgeList, Floats
 from penink_cli.reconstruction import _banded, _desk, _fit, _rows, _tile, lanes
-from penink_cli.reconstruction import threads as threading
 from penink_cli.reconstruction.lattice import Axis, axis
 from penink_cli.reconstruction.paths import Paths, spill
 

@@ -19,8 +19,8 @@ from itertools import count
 import numpy as np
 import numpy.typing as npt
 
-from penink_cli.errors import ParameterError
-from penink_cli.model import EdgeList
+from penink_cli.ground.errors import ParameterError
+from penink_cli.ground.model import EdgeList
 from penink_cli.reconstruction import _walls
 from penink_cli.reconstruction.camera import camera_blur
 from penink_cli.reconstruction.enlarge import reconstruct

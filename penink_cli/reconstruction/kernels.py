@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from penink_cli.errors import ParameterError
-from penink_cli.model import Floats
+from penink_cli.ground.errors import ParameterError
+from penink_cli.ground.model import Floats
 from penink_cli.reconstruction import _kernels
 
 KERNELS = ("cubic", "bspline")

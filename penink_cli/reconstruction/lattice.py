@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from penink_cli.model import Floats
+from penink_cli.ground.model import Floats
 from penink_cli.reconstruction import _kernels
 from penink_cli.reconstruction.kernels import Taps, taps
 

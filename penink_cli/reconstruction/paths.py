@@ -7,9 +7,9 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from penink_cli.model import EdgeList, Floats
+from penink_cli.ground import threads as threading
+from penink_cli.ground.model import EdgeList, Floats
 from penink_cli.reconstruction import _cells, _nodes, _scene, _search, _views
-from penink_cli.reconstruction import threads as threading
 
 COMPILED = _cells.COMPILED and _nodes.COMPILED and _scene.COMPILED and _search.COMPILED and _views.COMPILED
 

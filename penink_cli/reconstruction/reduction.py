@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from penink_cli.errors import ParameterError
-from penink_cli.model import EdgeList, Floats
+from penink_cli.ground import threads as threading
+from penink_cli.ground.errors import ParameterError
+from penink_cli.ground.model import EdgeList, Floats
 from penink_cli.reconstruction import _clean, _walls
-from penink_cli.reconstruction import threads as threading
 from penink_cli.reconstruction.camera import camera_blur
 from penink_cli.reconstruction.extraction import segments, walkable
 from penink_cli.reconstruction.fit import AREA, POINT, fit_plain, fit_samples

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from penink_cli.model import Floats, Ints
+from penink_cli.ground import threads as threading
+from penink_cli.ground.model import Floats, Ints
 from penink_cli.reconstruction import _weights
-from penink_cli.reconstruction import threads as threading
 from penink_cli.reconstruction.kernels import is_bspline, taps
 from penink_cli.reconstruction.paths import Paths
 

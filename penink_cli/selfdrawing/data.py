@@ -9,10 +9,10 @@ import numpy as np
 
 from penink_cli.blasting import screens
 from penink_cli.blasting.outlines import Run, runs
-from penink_cli.errors import LimitError
-from penink_cli.model import EdgeList, Floats, GreyImage, Illustration, Ints, Layer
+from penink_cli.geometry.trails import trails
+from penink_cli.ground.errors import LimitError
+from penink_cli.ground.model import EdgeList, Floats, GreyImage, Illustration, Ints, Layer
 from penink_cli.selfdrawing.lattice import PARTS, on_lattice
-from penink_cli.trails import trails
 
 #: Arrays of a Level 2 interpreter hold 65535 entries, one a sample: 254 × 254 and its border.
 MOST_SAMPLES = 254
@@ -129,7 +129,7 @@ def _outlined(layer: Layer, vertices: Ints, ends: Ints, strength: Floats | None,
         return []
     around = None
     if layer.outline.regions:
-        from penink_cli.arrangement import regions
+        from penink_cli.geometry import regions
 
         edges = _within_the_frame(vertices, ends, None, w, h)
         points = np.array(layer.outline.regions, np.float64) / (layer.edges.width, layer.edges.height)

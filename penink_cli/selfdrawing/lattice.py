@@ -10,9 +10,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from penink_cli.arrangement.quantisation import quantise
-from penink_cli.arrangement.sides import rounded_beside_samples
-from penink_cli.model import EdgeList, Floats, Ints
+from penink_cli.geometry.quantisation import quantise
+from penink_cli.geometry.sides import rounded_beside_samples
+from penink_cli.ground.model import EdgeList, Floats, Ints
 
 PARTS = 16  # lattice lines a sample
 

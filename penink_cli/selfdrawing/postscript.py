@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 
 from penink_cli.blasting.screens import Screen
-from penink_cli.model import Illustration
+from penink_cli.ground.model import Illustration
 from penink_cli.selfdrawing import packer
 from penink_cli.selfdrawing.data import LayerData, is_sent, layers, tile_bytes
 

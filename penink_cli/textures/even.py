@@ -7,11 +7,9 @@ scales at once (1/r, softened), so that the first ten and the first thousand are
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
-from penink_cli.model import Floats
+from penink_cli.ground.model import Floats
 
 
 class Torus:
@@ -50,8 +48,3 @@ class Torus:
         for r, c in zip(rows.tolist(), columns.tolist(), strict=True):
             top, left = (self.rows - r) % self.rows, (self.columns - c) % self.columns
             self.field += share * self.kernel[top : top + self.rows, left : left + self.columns]
-
-
-def direction(angle: float) -> tuple[float, float]:
-    """Cosine and sine of an angle in degrees, rounded so that every machine has the same."""
-    return round(math.cos(math.radians(angle)), 12), round(math.sin(math.radians(angle)), 12)

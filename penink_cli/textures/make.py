@@ -11,8 +11,9 @@ from collections.abc import Callable
 
 import numpy as np
 
-from penink_cli.model import Floats, HatchLayer, Strokes, Texture
-from penink_cli.textures.even import Torus, direction
+from penink_cli.ground.angles import direction
+from penink_cli.ground.model import Floats, HatchLayer, Strokes, Texture
+from penink_cli.textures.even import Torus
 
 TILE_PT = 144.0
 #: What a full tile covers, at the least.

@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from penink_cli.model import Floats, Ints, Strokes
+from penink_cli.ground.model import Floats, Ints, Strokes
 from penink_cli.travel import _improve, _tree
 
 NEIGHBOURS = 10

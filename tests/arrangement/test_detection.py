@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from penink_cli.arrangement.detection import detect_edges
-from tests.arrangement.crossings import crossings
+from tests.geometry.crossings import crossings
 
 
 def disc(size=64, centre=(31.3, 30.8), radius=17.4, low=0.2, high=0.8, blur=0.7):

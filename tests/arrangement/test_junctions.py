@@ -8,7 +8,7 @@ from penink_cli.arrangement import _exchange, _place, _regions, _settling, _shor
 from penink_cli.arrangement._place import Place
 from penink_cli.arrangement.detection import detect_edges
 from penink_cli.arrangement.junctions import _taps
-from penink_cli.reconstruction import threads
+from penink_cli.ground import threads
 from tests.benchmarks._scenes import Scene, disc, polygon, random_scene
 from tests.benchmarks.edges import along
 

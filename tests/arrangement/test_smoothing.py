@@ -8,7 +8,7 @@ from penink_cli.arrangement import _curves
 from penink_cli.arrangement.chains import Chains
 from penink_cli.arrangement.detection import detect_edges
 from penink_cli.arrangement.smoothing import smooth
-from penink_cli.model import EdgeList
+from penink_cli.ground.model import EdgeList
 
 
 def painted(size, inside, low=0.3, high=0.7, blur=0.8, noise=0.0, seed=0):

@@ -17,8 +17,8 @@ from penink_cli.blasting import curves, hatching, sweep, walls
 from penink_cli.blasting.blast import blast
 from penink_cli.blasting.shares import shares
 from penink_cli.blasting.sheet import Sheet
-from penink_cli.model import EdgeList, Floats
-from penink_cli.texture_options import find_texture
+from penink_cli.ground.model import EdgeList, Floats
+from penink_cli.options.textures import find_texture
 from tests.blasting import measures
 
 
@@ -215,7 +215,7 @@ SPEED = """
 import sys, io, time, numpy as np
 from penink_cli.blasting.blast import blast
 from penink_cli.blasting.sheet import Sheet
-from penink_cli.texture_options import find_texture
+from penink_cli.options.textures import find_texture
 trials = [0, 0]
 place = Sheet.place
 def counting(self, lines, widths, batches, **options):

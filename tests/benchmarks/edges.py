@@ -21,17 +21,18 @@ from PIL import Image
 from scipy.ndimage import gaussian_filter
 from scipy.spatial import cKDTree
 
-from penink_cli.arrangement import detection, validity
+from penink_cli.arrangement import detection
 from penink_cli.arrangement.detection import detect_edges
-from penink_cli.commands.inputs import settled
 from penink_cli.formats import archive, edge_list, illustration, pgm, strokes
-from penink_cli.model import EdgeList, GreyImage, Illustration, Layer, Strokes
+from penink_cli.geometry import validity
+from penink_cli.ground.model import EdgeList, GreyImage, Illustration, Layer, Strokes
+from penink_cli.options.inputs import settled
+from penink_cli.options.textures import find_texture
 from penink_cli.reconstruction.camera import camera_blur
 from penink_cli.reconstruction.enlarge import enlarge, reconstruct
 from penink_cli.reconstruction.extraction import contaminated, extract_samples
 from penink_cli.reconstruction.grid import choose_grid
 from penink_cli.reconstruction.reduction import reduce
-from penink_cli.texture_options import find_texture
 from tests.benchmarks._scenes import random_scene
 
 PHOTOS = {"camera": 4.0, "coins": 4.0, "astronaut": 3.5, "coffee": 3.0, "chelsea": 2.5, "rocket": 2.0}

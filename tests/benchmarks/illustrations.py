@@ -16,15 +16,16 @@ from PIL import Image
 
 from penink_cli.arrangement import detection
 from penink_cli.blasting.blast import blast
-from penink_cli.commands.inputs import read_illustration, settled
-from penink_cli.drawing import enlarged, joined
-from penink_cli.formats import archive, edge_list, illustration, postscript
-from penink_cli.formats.page import lay_out
-from penink_cli.layering import layer_strokes
-from penink_cli.model import EdgeList, GreyImage, Illustration, Layer
+from penink_cli.formats import archive, edge_list, illustration
+from penink_cli.ground.model import EdgeList, GreyImage, Illustration, Layer
+from penink_cli.illustration.drawing import enlarged, joined
+from penink_cli.illustration.layering import layer_strokes
+from penink_cli.options.inputs import read_illustration, settled
+from penink_cli.options.textures import find_texture
+from penink_cli.outputs import postscript
+from penink_cli.outputs.page import lay_out
 from penink_cli.reconstruction import extraction, reduction
 from penink_cli.reconstruction.enlarge import bands
-from penink_cli.texture_options import find_texture
 from tests.blasting import measures
 
 PHOTOGRAPHS = ("camera", "astronaut", "coffee", "coins", "chelsea")

@@ -19,9 +19,9 @@ from pathlib import Path
 import numpy as np
 
 from penink_cli.formats import strokes as strokes_format
-from penink_cli.formats.page import lay_out
-from penink_cli.formats.raster import cover
 from penink_cli.main import SUBCOMMANDS
+from penink_cli.outputs.page import lay_out
+from penink_cli.outputs.raster import cover
 from penink_cli.travel.order import ordered, travel_length
 from tests.outputs.drawings import crosshatch, strokes_of
 from tests.outputs.rendering import difference, ghostscript, pixels

@@ -23,9 +23,9 @@ import skimage.data
 from PIL import Image
 
 from penink_cli.arrangement.detection import detect_edges
-from penink_cli.arrangement.validity import check
 from penink_cli.formats import edge_list
-from penink_cli.model import EdgeList, GreyImage
+from penink_cli.geometry.validity import check
+from penink_cli.ground.model import EdgeList, GreyImage
 from penink_cli.reconstruction import _render, lanes
 from penink_cli.reconstruction import enlarge as enlarging
 from penink_cli.reconstruction.enlarge import enlarge, reconstruct

@@ -23,12 +23,12 @@ from scipy.ndimage import gaussian_filter, maximum_filter, minimum_filter
 from skimage import data as pictures
 
 from penink_cli.arrangement.detection import detect_edges
-from penink_cli.errors import LimitError
-from penink_cli.model import GreyImage, Illustration, Layer
+from penink_cli.ground.errors import LimitError
+from penink_cli.ground.model import GreyImage, Illustration, Layer
+from penink_cli.options.textures import find_texture
 from penink_cli.reconstruction import extraction, reduction
 from penink_cli.reconstruction.enlarge import enlarge
 from penink_cli.selfdrawing import data, html, postscript
-from penink_cli.texture_options import find_texture
 from tests.selfdrawing.chromium import Page
 from tests.selfdrawing.crossings import crossings
 from tests.selfdrawing.pictures import expected_tone, ghostscript, printed

@@ -12,9 +12,9 @@ import subprocess
 import numpy as np
 from scipy.ndimage import gaussian_filter, map_coordinates
 
-from penink_cli.formats import postscript
-from penink_cli.formats.page import lay_out
-from penink_cli.model import Floats, Strokes
+from penink_cli.ground.model import Floats, Strokes
+from penink_cli.outputs import postscript
+from penink_cli.outputs.page import lay_out
 
 EYE_INCH = 1 / 16
 GRID = 100  # samples to the inch at which tones are compared

@@ -7,9 +7,9 @@ from penink_cli.blasting import _curves, _due, _ink, _place, _press, _sweep, _wa
 from penink_cli.blasting.blast import blast, too_dark
 from penink_cli.blasting.shares import shares
 from penink_cli.blasting.sheet import Sheet
-from penink_cli.errors import ParameterError
-from penink_cli.model import EdgeList, HatchLayer, Strokes, Texture
-from penink_cli.texture_options import find_texture, shipped
+from penink_cli.ground.errors import ParameterError
+from penink_cli.ground.model import EdgeList, HatchLayer, Strokes, Texture
+from penink_cli.options.textures import find_texture, shipped
 from tests.blasting import measures
 
 

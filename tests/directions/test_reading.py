@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from penink_cli.directions.reading import at_size
-from penink_cli.model import Directions, EdgeList
+from penink_cli.ground.model import Directions, EdgeList
 
 
 def field_of(degrees: np.ndarray, confidence: float = 1.0) -> Directions:

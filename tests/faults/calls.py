@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from penink_cli.formats import edge_list, pgm
-from penink_cli.model import EdgeList, GreyImage
+from penink_cli.ground.model import EdgeList, GreyImage
 
 WIDTH, HEIGHT = 24, 18
 

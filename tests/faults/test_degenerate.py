@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from penink_cli.formats import edge_list, pgm
-from penink_cli.model import EdgeList, GreyImage
+from penink_cli.ground.model import EdgeList, GreyImage
 from tests.faults.calls import CALLS, encoded, strokes_text
 from tests.faults.test_outputs import one_line
 

@@ -9,8 +9,8 @@ from pathlib import Path
 import click
 import pytest
 
-from penink_cli import options
 from penink_cli.main import SUBCOMMANDS, penink
+from penink_cli.options import common as options
 from tests.faults.calls import CALLS, arguments
 from tests.faults.test_outputs import one_line
 

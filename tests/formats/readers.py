@@ -6,7 +6,7 @@ import io
 from collections.abc import Callable
 from typing import Any
 
-from penink_cli.errors import PeninkError
+from penink_cli.ground.errors import PeninkError
 
 MAX_PIXELS = 100_000
 SOURCE = "given.file"
@@ -78,7 +78,7 @@ def _archive(data: bytes) -> Any:
 def _illustration(data: bytes) -> Any:
     """A manifest whose every member is the small image, or the edge list, that fits."""
     from penink_cli.formats import illustration
-    from penink_cli.texture_options import find_texture
+    from penink_cli.options.textures import find_texture
 
     def fetch(name: str) -> bytes:
         if "edge" in name:

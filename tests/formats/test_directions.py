@@ -9,10 +9,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from penink_cli.commands.inputs import read_directions
-from penink_cli.errors import FormatError, LimitError
 from penink_cli.formats import directions
-from penink_cli.model import Directions
+from penink_cli.ground.errors import FormatError, LimitError
+from penink_cli.ground.model import Directions
+from penink_cli.options.inputs import read_directions
 from tests.formats.readers import written
 
 PLANE = b"P5 2 1 254\n"

@@ -12,9 +12,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from penink_cli.errors import FormatError, LimitError
 from penink_cli.formats import _plain_json, edge_list, strict_json
-from penink_cli.model import EdgeList
+from penink_cli.ground.errors import FormatError, LimitError
+from penink_cli.ground.model import EdgeList
 from tests.formats.readers import written
 
 GOOD = {

@@ -7,8 +7,8 @@ from xml.etree import ElementTree
 import numpy as np
 from PIL import Image
 
-from penink_cli.formats import edge_picture
-from penink_cli.model import EdgeList, GreyImage
+from penink_cli.ground.model import EdgeList, GreyImage
+from penink_cli.outputs import edge_picture
 
 SVG = "{http://www.w3.org/2000/svg}"
 

@@ -13,9 +13,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from penink_cli.errors import FormatError, LimitError
 from penink_cli.formats import lines as lines_format
-from penink_cli.model import Lines
+from penink_cli.ground.errors import FormatError, LimitError
+from penink_cli.ground.model import Lines
 from tests.formats.readers import written
 
 FILES = resources.files("penink_cli.formats")

@@ -9,9 +9,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from penink_cli.errors import FormatError, LimitError
 from penink_cli.formats import pgm
-from penink_cli.model import GreyImage
+from penink_cli.ground.errors import FormatError, LimitError
+from penink_cli.ground.model import GreyImage
 from tests.formats.readers import written
 
 

@@ -8,8 +8,8 @@ import re
 
 import pytest
 
-from penink_cli.errors import PeninkError
 from penink_cli.formats import edge_list, illustration, lines, pgm, photo, recognise, strokes, svg_texture, texture
+from penink_cli.ground.errors import PeninkError
 from penink_cli.main import SUBCOMMANDS
 
 

@@ -10,8 +10,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from penink_cli.errors import FormatError
 from penink_cli.formats import strict_json
+from penink_cli.ground.errors import FormatError
 
 REFUSED = {
     "nothing": (b"", "empty"),

@@ -11,10 +11,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from penink_cli.errors import FormatError, ParameterError
 from penink_cli.formats import _plain_json, _stroke_lines, strokes
-from penink_cli.model import HEADER as HEADER_MEMBERS
-from penink_cli.model import Strokes
+from penink_cli.ground.errors import FormatError, ParameterError
+from penink_cli.ground.model import HEADER as HEADER_MEMBERS
+from penink_cli.ground.model import Strokes
 
 HEADER = b'{"format": "penink-strokes", "version": 1, "width": 100, "height": 50}\n'
 

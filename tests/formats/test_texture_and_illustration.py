@@ -8,8 +8,8 @@ from typing import Any
 
 import pytest
 
-from penink_cli.errors import PeninkError
 from penink_cli.formats import texture
+from penink_cli.ground.errors import PeninkError
 from tests.formats.readers import READERS
 from tests.fuzz.seeds import ILLUSTRATION, TEXTURE
 

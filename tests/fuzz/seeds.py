@@ -9,7 +9,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from penink_cli.formats import archive, compact, directions, edge_list, pgm
-from penink_cli.model import Directions, EdgeList, GreyImage
+from penink_cli.ground.model import Directions, EdgeList, GreyImage
 from tests.faults.calls import encoded, strokes_text
 
 IMAGE = GreyImage((37 * np.arange(20) % 256).astype(np.uint8).reshape(4, 5))

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from penink_cli.formats import edge_list, pgm
-from penink_cli.model import EdgeList, GreyImage
+from penink_cli.ground.model import EdgeList, GreyImage
 
 
 def square(width: int = 96, height: int = 64, strength: float = 0.7) -> EdgeList:

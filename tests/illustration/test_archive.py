@@ -9,9 +9,9 @@ import zipfile
 
 import pytest
 
-from penink_cli.commands.inputs import read_illustration
-from penink_cli.errors import PeninkError
 from penink_cli.formats import archive
+from penink_cli.ground.errors import PeninkError
+from penink_cli.options.inputs import read_illustration
 
 
 @pytest.fixture

@@ -7,10 +7,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from penink_cli.arrangement import quantisation, validity
-from penink_cli.errors import FormatError, LimitError, PeninkError
 from penink_cli.formats import _compact, compact
-from penink_cli.model import EdgeList, GreyImage
+from penink_cli.geometry import quantisation, validity
+from penink_cli.ground.errors import FormatError, LimitError, PeninkError
+from penink_cli.ground.model import EdgeList, GreyImage
 from tests.conftest import ROOT
 from tests.illustration.conftest import grey, square
 

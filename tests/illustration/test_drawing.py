@@ -88,8 +88,8 @@ REJECTED = [
 
 
 def test_bad_manifests_are_refused(loose):
-    from penink_cli.commands.inputs import read_illustration
-    from penink_cli.errors import PeninkError
+    from penink_cli.ground.errors import PeninkError
+    from penink_cli.options.inputs import read_illustration
 
     good = json.loads(loose.read_text())
     for change, reason in REJECTED:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from penink_cli import layering
-from penink_cli.model import EdgeList, GreyImage, Illustration, Layer, OutlineChoice, Strokes
-from penink_cli.texture_options import find_texture
+from penink_cli.ground.model import EdgeList, GreyImage, Illustration, Layer, OutlineChoice, Strokes
+from penink_cli.illustration import layering
+from penink_cli.options.textures import find_texture
 from tests.blasting import measures
 
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from penink_cli.arrangement import regions
 from penink_cli.blasting import curve_fitting, curves, outlines
-from penink_cli.model import EdgeList, OutlineChoice, Strokes
+from penink_cli.geometry import regions
+from penink_cli.ground.model import EdgeList, OutlineChoice, Strokes
 from tests.illustration.test_quantisation import distance_to
 
 

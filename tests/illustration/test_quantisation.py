@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from penink_cli.arrangement import quantisation, sides, validity
-from penink_cli.model import EdgeList
+from penink_cli.geometry import quantisation, sides, validity
+from penink_cli.ground.model import EdgeList
 
 
 def distance_to(points: np.ndarray, edges: EdgeList) -> np.ndarray:

@@ -9,8 +9,8 @@ from __future__ import annotations
 import numpy as np
 from scipy.sparse.csgraph import dijkstra
 
-from penink_cli.arrangement.triangulation import triangulate
-from penink_cli.model import EdgeList
+from penink_cli.geometry.triangulation import triangulate
+from penink_cli.ground.model import EdgeList
 from tests.oracles.brute import turn
 
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from penink_cli.model import Strokes
+from penink_cli.ground.model import Strokes
 
 
 def strokes_of(chains, widths, width=144.0, height=144.0, layer=None):

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from penink_cli.formats import postscript
-from penink_cli.formats.page import lay_out
+from penink_cli.outputs import postscript
+from penink_cli.outputs.page import lay_out
 from penink_cli.travel.order import ordered
 from tests.outputs.drawings import crosshatch, every_kind, strokes_of
 from tests.outputs.rendering import difference, ghostscript
@@ -77,7 +77,7 @@ def test_the_numbers_say_where_the_strokes_are(drawing):
 
 @pytest.mark.parametrize("compress", [False, True])
 def test_ghostscript_draws_what_the_strokes_say(tmp_path, compress):
-    from penink_cli.formats.raster import cover
+    from penink_cli.outputs.raster import cover
 
     for drawing in (every_kind(), crosshatch(500, 144)):
         file = tmp_path / "a.eps"

@@ -9,8 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from PIL import Image
 
-from penink_cli.formats.page import Page, lay_out
-from penink_cli.formats.raster import _cover, cover, png
+from penink_cli.outputs.page import Page, lay_out
+from penink_cli.outputs.raster import _cover, cover, png
 from tests.outputs.drawings import crosshatch, every_kind, strokes_of
 from tests.outputs.rendering import difference, ghostscript, pixels
 
@@ -129,7 +129,7 @@ def test_strokes_far_away_cost_nothing_and_do_nothing():
 
 
 def test_strokes_widened_by_the_gain_are_what_a_printer_paints(tmp_path):
-    from penink_cli.formats.gain import narrowed, widened
+    from penink_cli.ground.gain import narrowed, widened
     from tests.outputs.test_postscript import written
 
     drawing = crosshatch(1200, 216)

@@ -7,8 +7,8 @@ import xml.etree.ElementTree as ET
 import numpy as np
 import pytest
 
-from penink_cli.formats import pdf, svg
-from penink_cli.formats.page import lay_out
+from penink_cli.outputs import pdf, svg
+from penink_cli.outputs.page import lay_out
 from tests.outputs.drawings import crosshatch, every_kind, strokes_of
 from tests.outputs.rendering import difference, ghostscript
 
@@ -70,7 +70,7 @@ def test_svg_layers_are_what_inkscape_and_vpype_take_for_layers():
 
 @pytest.mark.parametrize("drawing", [crosshatch(500, 144), every_kind()], ids=["crosshatch", "every kind"])
 def test_pdf_is_the_same_picture(tmp_path, drawing):
-    from penink_cli.formats.raster import cover
+    from penink_cli.outputs.raster import cover
 
     (tmp_path / "a.pdf").write_bytes(written(pdf, [drawing]))
     ours = np.concatenate(list(cover.bands([drawing], lay_out([drawing]), 300, 255)))

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from penink_cli.arrangement.validity import check
-from penink_cli.errors import ArrangementError
-from penink_cli.model import EdgeList
+from penink_cli.geometry.validity import check
+from penink_cli.ground.errors import ArrangementError
+from penink_cli.ground.model import EdgeList
 
 
 def edge_list(width, height, vertices, edges):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from penink_cli.model import EdgeList
+from penink_cli.ground.model import EdgeList
 
 FRAME = 4096  # pixels of the photo that the edge lists pretend to come from
 

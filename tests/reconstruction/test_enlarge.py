@@ -7,8 +7,8 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from penink_cli.errors import ParameterError
-from penink_cli.model import EdgeList, GreyImage
+from penink_cli.ground.errors import ParameterError
+from penink_cli.ground.model import EdgeList, GreyImage
 from penink_cli.reconstruction import enlarge as enlarging
 from penink_cli.reconstruction import lanes
 from penink_cli.reconstruction.enlarge import enlarge, reconstruct

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.ndimage import gaussian_filter
 
-from penink_cli.model import EdgeList
+from penink_cli.ground.model import EdgeList
 from penink_cli.reconstruction import _clean, _walls
 from penink_cli.reconstruction.extraction import extract_samples, segments
 

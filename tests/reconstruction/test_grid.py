@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from penink_cli.errors import ParameterError
-from penink_cli.model import EdgeList
+from penink_cli.ground.errors import ParameterError
+from penink_cli.ground.model import EdgeList
 from penink_cli.reconstruction import grid, shrinking
 from penink_cli.reconstruction.grid import choose_grid
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from penink_cli.model import EdgeList
+from penink_cli.ground.model import EdgeList
 from penink_cli.reconstruction import _banded, _fit, _rows, reduction
 from penink_cli.reconstruction.enlarge import reconstruct
 from penink_cli.reconstruction.fit import fit_samples

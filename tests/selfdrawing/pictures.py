@@ -9,7 +9,16 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
-from penink_cli.model import EdgeList, GreyImage, HatchLayer, Illustration, Layer, OutlineChoice, Strokes, Texture
+from penink_cli.ground.model import (
+    EdgeList,
+    GreyImage,
+    HatchLayer,
+    Illustration,
+    Layer,
+    OutlineChoice,
+    Strokes,
+    Texture,
+)
 from penink_cli.reconstruction.enlarge import enlarge
 from penink_cli.selfdrawing import data
 

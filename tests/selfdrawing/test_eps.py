@@ -9,10 +9,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from penink_cli.errors import LimitError
-from penink_cli.model import GreyImage, OutlineChoice
+from penink_cli.ground.errors import LimitError
+from penink_cli.ground.model import GreyImage, OutlineChoice
+from penink_cli.options.textures import find_texture
 from penink_cli.selfdrawing import data, packer, postscript
-from penink_cli.texture_options import find_texture
 from tests.selfdrawing.pictures import expected_tone, ghostscript, illustration, printed, two_layers
 
 CROP = ("-dEPSCrop",)

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from penink_cli.drawing import outline_strokes
-from penink_cli.model import EdgeList, GreyImage, Illustration, Layer, OutlineChoice
+from penink_cli.ground.model import EdgeList, GreyImage, Illustration, Layer, OutlineChoice
+from penink_cli.illustration.drawing import outline_strokes
 from penink_cli.selfdrawing import html, postscript
 from tests.selfdrawing.chromium import Page
 from tests.selfdrawing.pictures import CROSSHATCH, ghostscript

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from penink_cli.layering import layer_strokes
-from penink_cli.model import Illustration
+from penink_cli.ground.model import Illustration
+from penink_cli.illustration.layering import layer_strokes
+from penink_cli.options.textures import find_texture
 from penink_cli.selfdrawing import html, postscript
-from penink_cli.texture_options import find_texture
 from tests.selfdrawing.chromium import Page
 from tests.selfdrawing.pictures import CROSSHATCH, ghostscript, illustration, two_layers
 

@@ -11,9 +11,9 @@ import pytest
 from penink_cli.blasting.blast import blast
 from penink_cli.blasting.reach import reachable
 from penink_cli.blasting.tile import thresholds
-from penink_cli.errors import FormatError, ParameterError
 from penink_cli.formats import svg_texture, texture
-from penink_cli.texture_options import find_texture, shipped
+from penink_cli.ground.errors import FormatError, ParameterError
+from penink_cli.options.textures import find_texture, shipped
 from penink_cli.textures.kinds import KINDS
 from penink_cli.textures.make import MAKERS, make
 

@@ -1,0 +1,1 @@
+"""Arrangements of discontinuity edges as geometry: validity, trails, triangulation, regions, sides, quantisation."""

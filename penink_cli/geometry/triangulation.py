@@ -1,0 +1,164 @@
+"""The topology of an arrangement: its constrained Delaunay triangulation, the regions that edges enclose, walking.
+
+The only module that imports `triangle`. Triangles turn positively, (b − a) × (c − a) > 0, which with y down is
+clockwise on the page:
+
+        c            side k of a triangle runs from its corner k to its corner k + 1;
+       / \\           neighbours[t, k] is the triangle beyond side k, −1 beyond the frame;
+      2   1          fixed[t, k] says that side k is an edge of the arrangement.
+     /     \\
+    a---0---b
+
+A point asked about stands for p + (ε, ε²), as everywhere in this project, so it is always inside one triangle.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from penink_cli.geometry._sweep import orientation
+from penink_cli.ground.errors import ArrangementError
+from penink_cli.ground.model import EdgeList, Floats, Ints
+
+OWN = 2  # segment marker of the arrangement's edges; the library uses 0 and 1 for its own
+
+
+@dataclass(frozen=True, eq=False)
+class Triangulation:
+    """A frame cut into triangles along the edges of an arrangement.
+
+    vertices: (n, 2) those of the arrangement that have an edge, then corners of the frame that are not among them.
+    source: (n,) the vertex of the edge list each was, −1 for a corner of the frame.
+    triangles: (t, 3). neighbours: (t, 3) triangles, −1 for none. fixed: (t, 3).
+    regions: (t,) number of the region each triangle belongs to: triangles joined across sides that are not fixed.
+    """
+
+    vertices: Floats
+    source: Ints
+    triangles: Ints
+    neighbours: Ints
+    fixed: npt.NDArray[np.bool_]
+    regions: Ints
+
+    def side(self, a: int, b: int, x: float, y: float) -> int:
+        """Side of the line of vertices a → b on which the query (x, y) lies: 1 or −1."""
+        (ax, ay), (bx, by) = self.vertices[a].tolist(), self.vertices[b].tolist()
+        s = orientation(ax, ay, bx, by, x, y)
+        if s == 0:
+            s = (by < ay) - (by > ay) or (bx > ax) - (bx < ax)
+        return s
+
+    def locate(self, x: float, y: float, start: int = 0) -> int:
+        """The triangle that a point inside the frame is in, found by walking from another.
+
+        A point outside the frame ends the walk at the border: ArrangementError.
+        """
+        t, came = start, -1
+        # A Delaunay triangulation has no cycle for a walk to fall into, a constrained one may: the side to begin with
+        # then changes from step to step, and a walk that is too long anyhow gives way to looking everywhere.
+        for step in range(4 * len(self.triangles) + 4):
+            for k in ((step + i) % 3 for i in range(3)):
+                a, b = self.triangles[t, k], self.triangles[t, (k + 1) % 3]
+                beyond = int(self.neighbours[t, k])
+                if (beyond != came or came < 0) and self.side(a, b, x, y) < 0:
+                    if beyond < 0:
+                        raise ArrangementError(f"point {x:.6g},{y:.6g} is outside the frame")
+                    t, came = beyond, t
+                    break
+            else:
+                return t
+        for t, corners in enumerate(self.triangles):
+            if all(self.side(corners[k], corners[(k + 1) % 3], x, y) > 0 for k in range(3)):
+                return t
+        raise ArrangementError(f"point {x:.6g},{y:.6g} is outside the frame")
+
+    def regions_of(self, points: Floats) -> Ints:
+        """(n,) the region that each point (n, 2) is in; points near each other are found fastest in a row."""
+        out = np.empty(len(points), np.int64)
+        t = 0
+        for i, (x, y) in enumerate(points.tolist()):
+            t = self.locate(x, y, t)
+            out[i] = self.regions[t]
+        return out
+
+
+def triangulate(edges: EdgeList) -> Triangulation:
+    """The constrained Delaunay triangulation of a valid arrangement within its frame."""
+    import triangle
+
+    used = np.unique(edges.edges)
+    place = np.full(len(edges.vertices), -1, np.int64)
+    place[used] = np.arange(len(used))
+    vertices = edges.vertices[used]
+    w, h = float(edges.width), float(edges.height)
+    corners = np.array([c for c in ((0.0, 0.0), (w, 0.0), (w, h), (0.0, h)) if not (vertices == c).all(axis=1).any()])
+    corners = corners.reshape(-1, 2)
+    vertices = np.concatenate([vertices, corners])
+    source = np.concatenate([used, np.full(len(corners), -1)]).astype(np.int64)
+    segments = place[edges.edges]
+    # "p" obeys segments, "c" fills the convex hull, which is the frame. Without "c" nothing is left of open edges, and
+    # an empty array of segments is an error there.
+    if len(segments):
+        marks = np.full((len(segments), 1), OWN, np.int32)
+        result = triangle.triangulate(
+            {"vertices": vertices, "segments": segments.astype(np.int32), "segment_markers": marks}, "pc"
+        )
+    else:
+        result = triangle.triangulate({"vertices": vertices}, "c")
+    triangles = np.asarray(result["triangles"], np.int64)
+    if len(result["vertices"]) != len(vertices):
+        raise ArrangementError("edges cross: the arrangement must be valid before it is triangulated")
+    triangles = _turned(vertices, triangles)
+    neighbours = _neighbours(triangles)
+    fixed = _fixed(triangles, segments, len(vertices))
+    return Triangulation(vertices, source, triangles, neighbours, fixed, _regions(neighbours, fixed))
+
+
+def _turned(vertices: Floats, triangles: Ints) -> Ints:
+    """All triangles turning positively."""
+    a, b, c = (vertices[triangles[:, k]] for k in range(3))
+    area = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])
+    return np.where((area < 0)[:, None], triangles[:, ::-1], triangles)
+
+
+def _neighbours(triangles: Ints) -> Ints:
+    """The triangle beyond each side: the two halves of a side are next to each other once sides are sorted."""
+    sides = np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=-1).reshape(-1, 2)
+    low, high = sides.min(axis=1), sides.max(axis=1)
+    order = np.lexsort((high, low))
+    twin = np.flatnonzero((low[order[1:]] == low[order[:-1]]) & (high[order[1:]] == high[order[:-1]]))
+    out = np.full(len(sides), -1, np.int64)
+    one, other = order[twin], order[twin + 1]
+    out[one], out[other] = other // 3, one // 3
+    return out.reshape(-1, 3)
+
+
+def _fixed(triangles: Ints, segments: Ints, n: int) -> npt.NDArray[np.bool_]:
+    """Which sides are edges of the arrangement."""
+    following = np.roll(triangles, -1, axis=1)
+    keys = np.minimum(triangles, following) * n + np.maximum(triangles, following)
+    return (
+        np.isin(keys, segments.min(axis=1) * n + segments.max(axis=1)) if len(segments) else np.zeros_like(keys, bool)
+    )
+
+
+def _regions(neighbours: Ints, fixed: npt.NDArray[np.bool_]) -> Ints:
+    """Label triangles joined across free sides, numbered by their first triangle."""
+    region = np.full(len(neighbours), -1, np.int64)
+    count = 0
+    free = np.where(fixed, -1, neighbours).tolist()
+    for seed in range(len(neighbours)):
+        if region[seed] >= 0:
+            continue
+        region[seed] = count
+        stack = [seed]
+        while stack:
+            for beyond in free[stack.pop()]:
+                if beyond >= 0 and region[beyond] < 0:
+                    region[beyond] = count
+                    stack.append(beyond)
+        count += 1
+    return region

@@ -1,0 +1,10 @@
+"""Directions on the sheet."""
+
+from __future__ import annotations
+
+import math
+
+
+def direction(angle: float) -> tuple[float, float]:
+    """Cosine and sine of an angle in degrees, rounded so that every machine has the same."""
+    return round(math.cos(math.radians(angle)), 12), round(math.sin(math.radians(angle)), 12)

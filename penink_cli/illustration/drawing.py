@@ -1,0 +1,103 @@
+"""The stages between an illustration, or a photograph, and its strokes: what `render`, `draw` and the filters share."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from penink_cli.ground.errors import ParameterError
+from penink_cli.ground.model import EdgeList, Floats, GreyImage, OutlineChoice, Strokes, Texture
+
+PIXELS_PER_PT = 2.0  # of the grey that is blasted: half the distance between the closest strokes
+
+Advance = Callable[[int], None]
+
+
+def grey_size(width_pt: float, aspect: float) -> tuple[int, int]:
+    """Width and height in pixels of the grey to blast for a picture of that width; aspect is height over width."""
+    width = max(2, math.floor(width_pt * PIXELS_PER_PT + 0.5))
+    return width, max(1, math.floor(width * aspect + 0.5))
+
+
+def tone_curve(image: GreyImage, gamma: float) -> Floats:
+    """Ink coverage (h, w) of the image, its grey (0 … 1) raised to gamma."""
+    if gamma == 1.0:
+        return image.tone
+    # by a table, and rounded, so that the power is the same on every machine
+    table = np.array([round(1.0 - (v / image.maxval) ** gamma, 12) for v in range(image.maxval + 1)])
+    return table[image.values]
+
+
+def enlarged(samples: GreyImage, edges: EdgeList | None, size: tuple[int, int], threads: int | None) -> GreyImage:
+    """Samples at the size that they are blasted at: half by the reconstruction, doubled by the separable filter."""
+    from penink_cli.reconstruction.enlarge import bands
+
+    rows = bands(samples, edges, *size, soften=True, maxval=255, threads=threads)
+    return GreyImage(np.concatenate(list(rows)).astype(np.uint8), 255)
+
+
+def represented(
+    photo: GreyImage, threads: int | None, advance: Advance = lambda done: None
+) -> tuple[EdgeList, GreyImage, str]:
+    """A photograph's edges, and its samples on the smallest grid that serves, as the filters write them.
+
+    Also the option of `reduce` that gives these samples.
+    """
+    from penink_cli.arrangement import detection
+    from penink_cli.formats import edge_list
+    from penink_cli.reconstruction import extraction, grid, reduction
+
+    edges = edge_list.rounded(detection.detect_edges(photo.grey))
+    advance(1)
+    samples = GreyImage.from_grey(extraction.extract_samples(photo.grey, edges, None), 255)
+    advance(1)
+    try:
+        reduced = grid.choose_grid(samples.grey, edges, grid.MAX_ERROR, photo=photo.grey, threads=threads).samples
+        size = "--auto"
+    except ParameterError:  # no grid comes that near to a photo of noise or fine texture: half of it is enough to hatch
+        rows, columns = ((side + 1) // 2 for side in photo.values.shape)
+        reduced = reduction.reduce(samples.grey, edges, columns, rows, photo=photo.grey, fit="lsq", threads=threads)
+        size = f"--size {columns}x{rows}"
+    advance(1)
+    return edges, GreyImage.from_grey(reduced, 255), size
+
+
+def outlined(
+    edges: EdgeList, width_pt: float, height_pt: float, choice: OutlineChoice, ink: Strokes | None = None,
+    device_dpi: float | None = None,
+) -> Strokes:  # fmt: skip
+    """Outline strokes, as a strokes file holds them."""
+    return outline_strokes(edges, width_pt, height_pt, choice, ink, device_dpi).rounded()
+
+
+def blasted(
+    grey: GreyImage, width_pt: float, edges: EdgeList | None, texture: Texture, *, seed: int, pen_pt: float | None,
+    gamma: float, device_dpi: float | None, ink: Strokes | None, threads: int | None,
+) -> Strokes:  # fmt: skip
+    """The hatching of a grey image, as a strokes file holds it."""
+    from penink_cli.blasting.blast import blast
+
+    rows, columns = grey.values.shape
+    return blast(
+        tone_curve(grey, gamma), width_pt, width_pt * rows / columns, edges, texture, seed=seed, pen_pt=pen_pt,
+        device_dpi=device_dpi, outlines=ink, threads=threads,
+    ).rounded()  # fmt: skip
+
+
+def outline_strokes(
+    edges: EdgeList, width_pt: float, height_pt: float, choice: OutlineChoice, ink: Strokes | None = None,
+    device_dpi: float | None = None,
+) -> Strokes:  # fmt: skip
+    """Outline strokes of the edges chosen, for that printer; ink is on the sheet already, and not to be doubled."""
+    from penink_cli.blasting import outlines
+
+    around = None
+    if choice.regions:
+        from penink_cli.geometry import regions
+
+        around = regions.edges_around(edges, np.array(choice.regions, np.float64))
+    drawn = outlines.outline(edges, width_pt, height_pt, choice, around, ink)
+    return replace(drawn, device_dpi=device_dpi)

@@ -1,0 +1,143 @@
+"""The layers of an illustration, drawn together on one sheet so that their tones add up to the picture's."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from penink_cli.ground.model import Floats, GreyImage, Illustration, Strokes
+from penink_cli.illustration.drawing import Advance, enlarged, grey_size, outlined, tone_curve
+
+LEAST_TONE = 1 / 255  # below it an overlay is paper
+#: Layers that share a sheet are hatched anew with what was left over, so many times in all at the most, unless
+#: what is left over is no more than blasting one layer leaves (RMS of tone as the eye sees it).
+ROUNDS, GOOD = 3, 0.006
+
+
+def steps(illustration: Illustration) -> int:
+    """How often `layer_strokes` advances by 1."""
+    return len(illustration.layers) * (ROUNDS if _together(illustration) else 1)
+
+
+def layer_strokes(
+    illustration: Illustration,
+    width_pt: float,
+    *,
+    device_dpi: float | None = 600.0,
+    seed: int = 0,
+    threads: int | None = None,
+    advance: Advance = lambda done: None,
+) -> list[tuple[Strokes, Strokes]]:
+    """Hatching and outline strokes of each layer, bottom first, for a picture width_pt wide.
+
+    Outlines are ink first, those of all layers; then each layer is hatched up to the sum of its tone and of the layers
+    below, with their ink counted, wherever it has tone itself: so tones add up and no ink is there twice. What is left
+    over along the layers' common borders, where neither is free to add ink, is fed back to all of them. A layer with
+    the threshold rule is hatched as an illustration that draws itself is on a device, whatever the others are.
+    """
+    height_pt = width_pt * illustration.height / illustration.width
+    size = grey_size(width_pt, illustration.height / illustration.width)
+    outlines: list[Strokes] = []
+    for layer in illustration.layers:
+        drawn = Strokes(width_pt, height_pt, device_dpi=device_dpi)
+        if layer.outline is not None and layer.edges is not None:
+            before = Strokes.joined(outlines) if outlines else None
+            drawn = outlined(layer.edges, width_pt, height_pt, layer.outline, before, device_dpi)
+        outlines.append(drawn)
+    greys = [enlarged(layer.samples, layer.edges, size, threads) for layer in illustration.layers]
+    best: tuple[int, list[Strokes]] | None = None
+    extra: Floats | None = None
+    left = steps(illustration)
+    while left:
+        hatched, total = _hatched(
+            illustration, width_pt, height_pt, greys, extra, outlines, device_dpi, seed, threads, advance
+        )
+        left -= len(hatched)
+        if not _together(illustration):
+            best = 0, hatched
+            break
+        from penink_cli.blasting.blast import left_over
+
+        error = left_over(total, width_pt, height_pt, Strokes.joined([*outlines, *hatched]), device_dpi, threads)
+        # summed as whole numbers: the order of the sum is not the same on every machine
+        squares = int((np.rint(error * 4096).astype(np.int64) ** 2).sum())
+        if best is None or squares < best[0]:
+            best = squares, hatched
+        if squares <= (GOOD * 4096) ** 2 * error.size:
+            break
+        extra = error if extra is None else extra + error
+    advance(left)
+    assert best is not None
+    return list(zip(best[1], outlines))
+
+
+def _together(illustration: Illustration) -> bool:
+    """Whether layers share the sheet that can make up for one another."""
+    return sum(layer.rule == "best" for layer in illustration.layers) > 1
+
+
+def _hatched(
+    illustration: Illustration, width_pt: float, height_pt: float, greys: list[GreyImage], extra: Floats | None,
+    outlines: list[Strokes], device_dpi: float | None, seed: int, threads: int | None, advance: Advance,
+) -> tuple[list[Strokes], Floats]:  # fmt: skip
+    """The hatching of each layer, and the tone (h, w) of them all; extra: (h, w) what is wanted besides."""
+    from penink_cli.blasting.blast import blast
+
+    ink = Strokes.joined(outlines)
+    total: Floats | None = None
+    result = []
+    by_device = _hatched_as_by_a_device(illustration, width_pt, height_pt, device_dpi, outlines, threads)
+    for i, (layer, grey) in enumerate(zip(illustration.layers, greys)):
+        tone = tone_curve(grey, layer.gamma)
+        total = tone if total is None else np.minimum(1.0, total + tone)
+        wanted = total
+        if extra is not None and layer.rule == "best":
+            wanted = np.clip(total + extra, 0.0, 1.0)
+        if i > 0 or extra is not None:
+            wanted = np.where(tone >= LEAST_TONE, wanted, 0.0)
+        if layer.rule == "threshold":
+            hatched = replace(by_device[i], device_dpi=device_dpi)
+        else:
+            hatched = blast(
+                wanted, width_pt, height_pt, layer.edges, layer.texture, seed=seed + layer.seed + i,
+                pen_pt=layer.pen_pt, device_dpi=device_dpi, rule=layer.rule, outlines=ink if len(ink) else None,
+                threads=threads,
+            )  # fmt: skip
+        hatched = hatched.rounded()
+        ink = Strokes.joined([ink, hatched])
+        result.append(hatched)
+        advance(1)
+    assert total is not None
+    return result, total
+
+
+def _hatched_as_by_a_device(
+    illustration: Illustration, width_pt: float, height_pt: float, device_dpi: float | None, outlines: list[Strokes],
+    threads: int | None,
+) -> dict[int, Strokes]:  # fmt: skip
+    """Hatching of the layers with the threshold rule, from samples and edges as a device is sent them, on its grids."""
+    numbers = [i for i, layer in enumerate(illustration.layers) if layer.rule == "threshold"]
+    if not numbers:
+        return {}
+    from penink_cli.blasting import threshold
+    from penink_cli.reconstruction.enlarge import enlarge
+    from penink_cli.selfdrawing.data import as_sent, family
+
+    layers = [illustration.layers[i] for i in numbers]
+    sheet = threshold.paper([(layer.texture, layer.pen_pt) for layer in layers], width_pt, height_pt, device_dpi)
+    tones, edges = [], []
+    for i, layer in zip(numbers, layers, strict=True):
+        if len(outlines[i]):
+            sheet.cover(outlines[i])
+        samples, sent = as_sent(layer)
+        h, w = samples.values.shape
+        n, m = threshold.grid(layer.texture, layer.pen_pt, device_dpi, width_pt, height_pt)
+        grey = enlarge(samples, sent, max(n, w), max(m, h), threads=threads)
+        tones.append(threshold.in_255ths(tone_curve(grey, layer.gamma)))
+        edges.append(sent)
+    added = threshold.add_up(tones, [family(illustration, i) for i in numbers])
+    return {
+        i: threshold.blast_on(sheet, *tone, sent, layer.texture, layer.pen_pt, device_dpi)
+        for i, layer, tone, sent in zip(numbers, layers, added, edges, strict=True)
+    }

@@ -1,0 +1,39 @@
+"""Grey overlays (section 3): a photograph taken apart into layers whose tones add up to its own."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from penink_cli.ground.errors import ParameterError
+from penink_cli.ground.model import EdgeList, Floats, GreyImage
+
+
+def by_mask(photo: GreyImage, mask: GreyImage) -> Floats:
+    """The layer's share (h, w), 0 … 1, of each pixel: the mask's grey."""
+    if photo.values.shape != mask.values.shape:
+        (h, w), (rows, columns) = photo.values.shape, mask.values.shape
+        raise ParameterError(f"the mask has {columns} x {rows} pixels; the photo has {w} x {h}")
+    return mask.values / float(mask.maxval)
+
+
+def by_grey(photo: GreyImage, low: float, high: float) -> Floats:
+    """1 where the grey is from low up to, but not including, high, else 0. White is in the range that ends at 1."""
+    grey = photo.values / float(photo.maxval)
+    return ((grey >= low) & ((grey < high) | (high == 1))).astype(np.float64)
+
+
+def by_region(photo: GreyImage, edges: EdgeList, points: Sequence[tuple[float, float]]) -> Floats:
+    """1 where a pixel's centre lies in the regions of the arrangement that hold the points, else 0."""
+    from penink_cli.geometry import regions
+
+    return regions.region_mask(edges, np.array(points), *photo.values.shape[::-1]).astype(np.float64)
+
+
+def overlay(photo: GreyImage, share: Floats, invert: bool = False) -> GreyImage:
+    """The photo's tone times the share, on white; inverted, exactly what is missing from that."""
+    ink = photo.maxval - photo.values.astype(np.int64)
+    part = np.floor(ink * share + 0.5).astype(np.int64)
+    values = photo.maxval - (ink - part if invert else part)
+    return GreyImage(values.astype(np.uint8) if photo.maxval < 256 else values.astype(np.uint16), photo.maxval)

@@ -1,0 +1,180 @@
+"""What the to-* subcommands share: strokes files, each a layer; paper; colour; the order for a pen."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import click
+
+from penink_cli.ground.errors import ParameterError, in_quotes
+from penink_cli.ground.papers import paper_size
+from penink_cli.ground.streams import reading, source_name
+from penink_cli.options.common import LENGTH, Finite, Length
+
+if TYPE_CHECKING:  # numpy and what needs it are imported when there is work, not for a help text
+    from penink_cli.ground.model import Strokes
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+NAMED = {"black": "000000", "white": "ffffff", "grey": "808080", "gray": "808080", "red": "ff0000", "green": "008000",
+         "blue": "0000ff", "cyan": "00ffff", "magenta": "ff00ff", "yellow": "ffff00", "brown": "a52a2a",
+         "sepia": "704214", "navy": "000080", "maroon": "800000", "orange": "ffa500", "purple": "800080"}  # fmt: skip
+
+
+class Colour(click.ParamType):
+    """``#rrggbb``, ``#rgb`` or a name, as red, green and blue from 0 to 1."""
+
+    name = "colour"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> tuple[float, ...]:
+        """(red, green, blue)."""
+        if isinstance(value, tuple):
+            return value
+        code = NAMED.get(value.lower(), value.lower().removeprefix("#"))
+        if re.fullmatch("[0-9a-f]{3}", code):
+            code = "".join(c + c for c in code)
+        if not re.fullmatch("[0-9a-f]{6}", code):
+            self.fail(f"{in_quotes(value)} is not #rrggbb or one of {', '.join(NAMED)}", param, ctx)
+        return tuple(int(code[i : i + 2], 16) / 255 for i in (0, 2, 4))
+
+
+class Paper(click.ParamType):
+    """The name of a paper, or its size."""
+
+    name = "paper"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> str:
+        """The name as given, known to be one."""
+        try:
+            paper_size(value)
+        except ParameterError as error:
+            self.fail(error.message, param, ctx)
+        return str(value)
+
+
+files_argument = click.argument("files", nargs=-1, metavar="[FILE]...", type=click.Path(allow_dash=True))
+
+
+def page_options(function: F) -> F:
+    """--paper, --margin and --landscape."""
+    for decorate in (
+        click.option("--landscape", is_flag=True, help="Turn the paper's longer side across."),
+        click.option(
+            "--margin",
+            type=Length(zero=True),
+            default="0",
+            metavar="LENGTH",
+            help="Leave at least that much free around the picture: 10mm, 0.5in.  [default: 0]",
+        ),
+        click.option(
+            "--paper",
+            type=Paper(),
+            metavar="NAME|WxH",
+            help="Put the picture in the middle of a4, letter … or 210mmx297mm.  [default: the picture's size]",
+        ),
+    ):
+        function = decorate(function)
+    return function
+
+
+colour_option = click.option(
+    "--color",
+    "--colour",
+    "colours",
+    type=Colour(),
+    multiple=True,
+    metavar="COLOUR",
+    help="Colour of the ink, #rrggbb or a name; given again, of the next layer.  [default: black]",
+)
+
+
+def gain_option(function: F) -> F:
+    """--device-dpi, for outputs that add nothing to a stroke's width."""
+    return click.option(
+        "--device-dpi",
+        type=Finite(10, 100_000),
+        metavar="N",
+        help="Draw the strokes as wide as a printer of N dots an inch paints them, for which blast made them.",
+    )(function)
+
+
+def travel_options(function: F) -> F:
+    """--order, --join, --speed."""
+    for decorate in (
+        click.option(
+            "--speed",
+            type=LENGTH,
+            metavar="LENGTH",
+            help="Report how long a pen takes that draws and travels that far in a second: 50mm.",
+        ),
+        click.option(
+            "--join",
+            type=Length(zero=True),
+            default="0.05",
+            metavar="LENGTH",
+            help="With --order, draw strokes in one go whose ends are that near.  [default: 0.05pt]",
+        ),
+        click.option("--order", is_flag=True, help="Order and turn the strokes so that a pen travels little."),
+    ):
+        function = decorate(function)
+    return function
+
+
+def read_layers(files: Sequence[str]) -> list[Strokes]:
+    """The layers, the first at the bottom; no file is standard input."""
+    from penink_cli.formats import strokes
+
+    paths = list(files) or ["-"]
+    if paths.count("-") > 1:
+        raise click.UsageError("standard input can be one layer only")
+    layers = []
+    for path in paths:
+        with reading(path) as stream:
+            layers.append(strokes.read(stream, source_name(path)))
+    return layers
+
+
+def as_printed(layers: Sequence[Strokes], device_dpi: float | None) -> list[Strokes]:
+    """The layers with what a printer adds to their width, if one is named."""
+    if device_dpi is None:
+        return list(layers)
+    from penink_cli.ground.gain import widened
+
+    return [widened(layer, device_dpi) for layer in layers]
+
+
+def for_a_pen(
+    layers: Sequence[Strokes], join: float, speed: float | None, verbose: bool, quiet: bool
+) -> list[Strokes]:
+    """Each layer ordered, ends that meet joined; reported on standard error if asked for."""
+    from penink_cli.options.progress import progress
+    from penink_cli.travel.order import joined, ordered
+
+    result = []
+    with progress(2 * sum(map(len, layers)), "order", quiet) as advance:
+        for layer in layers:
+            result.append(joined(ordered(layer, advance=advance), join))
+    report_travel(layers, result, speed, verbose)
+    return result
+
+
+def report_travel(before: Sequence[Strokes], after: Sequence[Strokes], speed: float | None, verbose: bool) -> None:
+    """Drawn and travelled length, and the time at a speed (points a second), on standard error."""
+    if speed is None and not verbose:
+        return
+    from penink_cli.travel.order import drawn_length, travel_length
+
+    mm = 25.4 / 72
+    drawn = math.fsum(map(drawn_length, after)) * mm
+    was, travelled = (math.fsum(map(travel_length, layers)) * mm for layers in (before, after))
+    count = sum(map(len, after))
+    line = f"{count} strokes: {drawn / 1000:.2f} m drawn, {travelled / 1000:.2f} m travelled with the pen up"
+    if before is not after:
+        line += f" ({was / 1000:.2f} m before)"
+    if speed is not None:
+        seconds = round((drawn + travelled) / (speed * mm))
+        line += f", {seconds // 3600}:{seconds // 60 % 60:02d}:{seconds % 60:02d} at {speed * mm:g} mm/s"
+    click.echo(line, err=True)

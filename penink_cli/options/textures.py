@@ -1,0 +1,56 @@
+"""Finding a texture by the value of ``--texture``: one of the shipped ones by name, or a file."""
+
+from __future__ import annotations
+
+import gzip
+import io
+from collections.abc import Callable
+from importlib import resources
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import click
+
+from penink_cli.ground.errors import ParameterError, printable
+from penink_cli.ground.streams import reading, source_name
+from penink_cli.options.common import NameOrFile, is_file
+
+if TYPE_CHECKING:
+    from penink_cli.ground.model import Texture
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+ENDING = ".texture.json.gz"
+
+
+
+def shipped() -> list[str]:
+    """Names of the textures that come with the program."""
+    tiles = resources.files("penink_cli.textures") / "tiles"
+    return sorted(f.name.removesuffix(ENDING) for f in tiles.iterdir() if f.name.endswith(ENDING))
+
+
+TEXTURE = NameOrFile(shipped)
+
+texture_option = click.option(
+    "-t",
+    "--texture",
+    "texture_name",
+    type=TEXTURE,
+    default="crosshatch",
+    show_default=True,
+    metavar="NAME|FILE",
+    help="A shipped texture (see penink texture list) or a texture file.",
+)
+
+
+def find_texture(name: str) -> Texture:
+    """The texture of that name, or in that file (a name with a dot or a slash in it, or ``-``)."""
+    from penink_cli.formats import texture as texture_format
+
+    if is_file(name):
+        with reading(name) as stream:
+            return texture_format.read(stream, source_name(name))
+    if name not in shipped():
+        raise ParameterError(f"no texture {printable(name, 60)}; known are {', '.join(shipped())}, or give a file")
+    tile = resources.files("penink_cli.textures") / "tiles" / (name + ENDING)
+    return texture_format.read(io.BytesIO(gzip.decompress(tile.read_bytes())), tile.name)

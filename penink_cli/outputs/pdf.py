@@ -1,0 +1,94 @@
+"""Strokes as PDF: one page of vector paths, layers as optional content that viewers can switch.
+
+The objects and the cross-reference table are pydyf's work. No date, no identifier: equal
+strokes give equal bytes.
+"""
+
+from __future__ import annotations
+
+import io
+import zlib
+from collections.abc import Sequence
+
+import numpy as np
+import pydyf
+
+from penink_cli.formats.strokes import Sink
+from penink_cli.ground.model import Strokes
+from penink_cli.outputs import words
+from penink_cli.outputs.page import Page
+
+DECIMALS = 3  # of a point
+MOST = 14400  # a side of a page in user-space units, beyond which viewers differ
+
+
+def write(
+    out: Sink, layers: Sequence[Strokes], page: Page, colours: Sequence[tuple[float, float, float]] = ()
+) -> None:
+    """Write a PDF 1.5 file; the first layer is at the bottom. Colours: red, green, blue (0 … 1) of each layer."""
+    document = pydyf.PDF()
+    content = [b"1 J 1 j\n"]
+    properties, groups = pydyf.Dictionary(), pydyf.Array()
+    for i, layer in enumerate(layers):
+        group = pydyf.Dictionary({"Type": "/OCG", "Name": pydyf.String(layer.layer or f"layer {i + 1}")})
+        document.add_object(group)
+        groups.append(group.reference)
+        properties[f"L{i + 1}"] = group.reference
+        colour = colours[i] if i < len(colours) else (0.0, 0.0, 0.0)
+        paint = b"0 G" if colour == (0, 0, 0) else b"%.4f %.4f %.4f RG" % colour
+        content += [b"/OC /L%d BDC\n%s\n" % (i + 1, paint), *_paths(layer, page), b"EMC\n"]
+    # Sides beyond Acrobat's limit are given in a larger unit.
+    unit = max(1.0, max(page.width, page.height) / MOST)
+    if unit > 1:
+        content.insert(0, b"%.9f 0 0 %.9f 0 0 cm\n" % (1 / unit, 1 / unit))
+    stream = pydyf.Stream([zlib.compress(b"".join(content), 6)], {"Filter": "/FlateDecode"})
+    document.add_object(stream)
+    leaf = {
+        "Type": "/Page",
+        "Parent": document.pages.reference,
+        "Contents": stream.reference,
+        "MediaBox": pydyf.Array([0, 0, *(round(side / unit, DECIMALS) for side in (page.width, page.height))]),
+        "Resources": pydyf.Dictionary({"Properties": properties}),
+    }
+    if unit > 1:
+        leaf["UserUnit"] = round(unit, 9)
+    document.add_page(pydyf.Dictionary(leaf))
+    document.catalog["OCProperties"] = pydyf.Dictionary(
+        {"OCGs": groups, "D": pydyf.Dictionary({"Order": groups, "ON": groups})}
+    )
+    held = io.BytesIO()
+    document.write(held, version=b"1.5" if unit == 1 else b"1.6")
+    out.write(held.getvalue())
+
+
+def _paths(layer: Strokes, page: Page) -> list[bytes]:
+    """The operators that draw a layer, each stroke by itself, the pen set where it changes."""
+    if not len(layer):
+        return []
+    counts = np.diff(layer.first)
+    exact = layer.points * (1, -1) + np.array((page.x, page.height - page.y))
+    grid = words.whole(exact * 10**DECIMALS)
+    last = layer.first[1:] - 1
+    # A dot is a line to itself: its numbers stand twice.
+    times = np.ones(len(grid), np.int64)
+    times[last[counts == 1]] = 2
+    numbers = np.repeat(grid, times, axis=0)
+    inner = np.arange(len(grid)) - np.repeat(layer.first[:-1], counts)
+    after = np.zeros((len(grid), 2), np.int32)
+    after[inner == 0, 1] = 1
+    after[(inner > 0) & (inner % 3 == 0), 1] = 2
+    pens, pen = np.unique(words.whole(layer.widths * 10000), return_inverse=True)
+    # What ends a stroke names the next one's pen, if that is another.
+    follows = np.append(pen[1:], pen[-1])
+    switch = np.where(follows == pen, 0, 1 + follows)
+    table = [b" ", b" m\n", b" c\n", *(b" c S\n" + w for w in _pens(pens)), *(b" l S\n" + w for w in _pens(pens))]
+    after[last[counts > 1], 1] = 3 + switch[counts > 1]
+    after = np.repeat(after, times, axis=0)
+    copies = np.cumsum(times) - 1  # the last copy of each point
+    after[copies[last[counts == 1]], 1] = 3 + len(pens) + 1 + switch[counts == 1]
+    return [_pens(pens)[1 + pen[0]], bytes(words.text(numbers.ravel(), after.ravel(), table, DECIMALS))]
+
+
+def _pens(pens: np.ndarray) -> list[bytes]:
+    """Nothing, then what sets each pen."""
+    return [b"", *(f"{p / 10000:.4f}".rstrip("0").rstrip(".").encode() + b" w\n" for p in pens.tolist())]

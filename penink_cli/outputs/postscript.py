@@ -1,0 +1,288 @@
+"""Strokes as PostScript: EPS by the Document Structuring Conventions, or a page for a printer.
+
+Compact, as a drawing is a hundred thousand strokes: coordinates are whole numbers, of 1/20 pt
+unless the pen is very fine, and each is relative to the one before. Strokes of one pen and one
+kind stand together in arrays of numbers, and a short procedure per kind draws an array:
+
+    {dx dy …}           d    dots
+    {dx dy u v …}     k l    straight segments, k a stroke, each u v long
+    {dx dy u v p q …} k b    segments that bend: control points at a third and two thirds of
+                             the way, p and p + q to the left of it
+    {dx dy x1 y1 x2 y2 x3 y3 …} k c   any Bézier segments
+
+dx dy leads from the last stroke's end to the beginning. The position is kept in whole numbers,
+so nothing drifts. The ink of a layer has one colour, so its strokes may be drawn in any order: one
+with short ways between them makes short numbers.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+
+from penink_cli.formats.strokes import Sink
+from penink_cli.ground.model import Floats, Ints, Strokes
+from penink_cli.outputs import words
+from penink_cli.outputs.page import Page, ink_box
+
+UNITS = 20  # a point: an eighth of a 0.4 pt pen
+CHAIN = 200  # segments; Level 1 interpreters hold 1500 elements in a path
+NUMBERS = 400  # in an array
+SEGMENT = {"d": 0, "l": 2, "b": 4, "c": 6}  # numbers a segment, by the kind of stroke
+
+# Names of one letter are what keeps the file small; the dictionary is our own.
+# e: dx dy, a new position; m: the same, and a path begins there; a: {…} k n, does `p` (set before)
+# with the n numbers of each segment of each stroke.
+PROLOG = b"""\
+/penink 24 dict def
+penink begin
+/x 0 def /y 0 def
+/w {setlinewidth} bind def
+/e {y add /y exch def x add /x exch def} bind def
+/m {e x y moveto} bind def
+/d {cvlit /A exch def
+ 0 2 A length 1 sub {A exch 2 getinterval aload pop m x y lineto stroke} for} bind def
+/a {/n exch def n mul 2 add /N exch def cvlit /A exch def
+ 0 N A length 1 sub {
+  A exch N getinterval dup 0 2 getinterval aload pop m
+  /S exch def
+  2 n N 1 sub {S exch n getinterval aload pop p} for
+  stroke
+ } for} bind def
+/l {/p {2 copy rlineto e} def 2 a} bind def
+/c {/p {2 copy 8 2 roll rcurveto e} def 6 a} bind def
+/b {/p {
+  1 index add /r exch def /s exch def /v exch def /u exch def
+  u u mul v v mul add sqrt /L exch def /s s L div def /r r L div def
+  u 3 div v s mul sub v 3 div u s mul add
+  u 1.5 div v r mul sub v 1.5 div u r mul add
+  u v rcurveto u v e} def 4 a} bind def
+"""
+FLATE = b"/z {/F currentfile /ASCII85Decode filter def F /FlateDecode filter cvx exec F flushfile} bind def\n"
+
+
+def write(
+    out: Sink,
+    layers: Sequence[Strokes],
+    page: Page,
+    colours: Sequence[tuple[float, float, float]] = (),
+    compress: bool = False,
+    order: Callable[[Strokes], Strokes] = lambda strokes: strokes,
+) -> None:
+    """Write one EPS, or, where the page is a paper, one page for a printer.
+
+    layers: the first at the bottom. colours: red, green, blue (0 … 1) of each layer; black if there is none.
+    order: brings strokes into an order with short ways between them.
+    """
+    _write_head(out, layers, page, compress)
+    units = _units(layers)
+    # The position starts at the sheet's top-left corner; y is turned up only here.
+    out.write(b"gsave penink begin\n1 setlinecap 1 setlinejoin [] 0 setdash\n")
+    if page.landscape:
+        out.write(b"90 rotate 0 %s translate\n" % _number(-page.height))
+    out.write(b"%s %s translate 1 %d div dup scale\n" % (_number(page.x), _number(page.height - page.y), units))
+    at = (0, 0)
+    for i, layer in enumerate(layers):
+        name = layer.layer or f"layer {i + 1}"
+        out.write(b"%%%%BeginObject: %s\n" % _text(name))
+        colour = colours[i] if i < len(colours) else (0.0, 0.0, 0.0)
+        out.write(b"0 setgray\n" if colour == (0, 0, 0) else b"%s %s %s setrgbcolor\n" % tuple(map(_number, colour)))
+        body, at = _body(layer, units, at, order)
+        if compress:
+            out.write(b"z\n")
+            out.write(_ascii85(b"".join(body)))
+        else:
+            for part in body:
+                out.write(part)
+        out.write(b"%%EndObject\n")
+    out.write(b"end grestore\n%%PageTrailer\nshowpage\n%%Trailer\n%%EOF\n")
+
+
+def _write_head(out: Sink, layers: Sequence[Strokes], page: Page, compress: bool) -> None:
+    x0, y0, x1, y1 = 0.0, 0.0, page.width, page.height
+    if page.paper:  # what is printed on the paper, not the paper
+        x0, y0 = page.x, page.y
+        x1, y1 = x0 + max(s.width for s in layers), y0 + max(s.height for s in layers)
+    for box in filter(None, map(ink_box, layers)):
+        slack = 1 / _units(layers)  # by rounding
+        x0, y0 = min(x0, page.x + box[0] - slack), min(y0, page.y + box[1] - slack)
+        x1, y1 = max(x1, page.x + box[2] + slack), max(y1, page.y + box[3] + slack)
+    bounds = (x0, page.height - y1, x1, page.height - y0)
+    media = (page.width, page.height)
+    if page.landscape:  # the paper goes through the printer upright
+        bounds = (y0, x0, y1, x1)
+        media = (page.height, page.width)
+    exact = [*(math.floor(v * 1000) / 1000 for v in bounds[:2]), *(math.ceil(v * 1000) / 1000 for v in bounds[2:])]
+    rough = [*(math.floor(v) for v in exact[:2]), *(math.ceil(v) for v in exact[2:])]
+    out.write(b"%!PS-Adobe-3.0\n" if page.paper else b"%!PS-Adobe-3.0 EPSF-3.0\n")
+    out.write(b"%%%%BoundingBox: %d %d %d %d\n" % tuple(rough))
+    out.write(b"%%%%HiResBoundingBox: %s %s %s %s\n" % tuple(map(_number, exact)))
+    out.write(b"%%Creator: penink\n%%Pages: 1\n%%DocumentData: Clean7Bit\n")
+    if compress:
+        out.write(b"%%LanguageLevel: 3\n")
+    elif page.paper:
+        out.write(b"%%LanguageLevel: 2\n")
+    size = tuple(map(_number, media))
+    if page.paper:
+        out.write(b"%%%%Orientation: %s\n" % (b"Landscape" if page.landscape else b"Portrait"))
+        out.write(b"%%%%DocumentMedia: %s %s %s 0 () ()\n" % (page.paper.encode("ascii"), *size))
+    out.write(b"%%EndComments\n%%BeginProlog\n")
+    out.write(PROLOG)
+    if compress:
+        out.write(FLATE)
+    out.write(b"end\n%%EndProlog\n")
+    if page.paper:
+        out.write(b"%%%%BeginSetup\n%%%%BeginFeature: *PageSize %s\n" % page.paper.encode("ascii"))
+        out.write(b"<< /PageSize [%s %s] >> setpagedevice\n%%%%EndFeature\n%%%%EndSetup\n" % size)
+    out.write(b"%%Page: 1 1\n")
+
+
+def _units(layers: Sequence[Strokes]) -> int:
+    """Whole numbers a point: more than UNITS only for pens so fine that half of one would be lost."""
+    finest = min((float(s.widths.min()) for s in layers if len(s)), default=1.0)
+    return min(max(UNITS, math.ceil(2 / finest)), 2000)
+
+
+def _body(
+    strokes: Strokes, units: int, at: tuple[int, int], order: Callable[[Strokes], Strokes]
+) -> tuple[list[bytes], tuple[int, int]]:
+    """The arrays of one layer, beginning with the pen at ``at``, and where it is left."""
+    parts: list[bytes] = []
+    pen = 0.0
+    for kind, k, group in _groups(_split(strokes), units):
+        if group.widths[0] != pen:
+            pen = group.widths[0]
+            parts.append(b"%s w\n" % _number(pen * units))
+        rows, ends = _rows(kind, k, order(group), units)
+        rows[:, :2] = ends[:, :2] - np.vstack([at, ends[:-1, 2:]])
+        at = (int(ends[-1, 2]), int(ends[-1, 3]))
+        call = b"}d\n" if kind == "d" else b"}%d %s\n" % (k, kind.encode())
+        parts += [b"{", bytes(_arrays(rows, SEGMENT[kind], call))]
+    return parts, at
+
+
+def _arrays(rows: Ints, step: int, call: bytes) -> memoryview:
+    """Rows of numbers as arrays of some 400, a line ending after each stroke, or segment of a long one."""
+    after = np.zeros(rows.shape, np.int32)
+    if rows.shape[1] > 24:
+        after[:, 1::step] = 1
+    if not step:
+        after[7::8, -1] = 1  # eight dots a line
+    else:
+        after[:, -1] = 1
+    every = max(1, NUMBERS // rows.shape[1])
+    after[every - 1 :: every, -1] = 2
+    after[-1, -1] = 3
+    return words.text(rows.ravel(), after.ravel(), [b" ", b"\n", call + b"{", call])
+
+
+def _groups(strokes: Strokes, units: int) -> Iterator[tuple[str, int, Strokes]]:
+    """Strokes of one pen, kind and number of segments k together."""
+    counts = np.diff(strokes.first)
+    segments = (counts - 1) // 3
+    inner = np.arange(len(strokes.points)) - np.repeat(strokes.first[:-1], counts)
+    begins = np.flatnonzero((inner % 3 == 0) & (inner < np.repeat(counts, counts) - 1))
+    owner = np.repeat(np.arange(len(strokes)), segments)
+    _, kinds = _bends(strokes.points[begins[:, None] + np.arange(4)] * units)
+    kind = np.zeros(len(strokes), np.int64)
+    np.maximum.at(kind, owner, kinds)
+    _, pen = np.unique(strokes.widths, return_inverse=True)
+    key = (pen * len(SEGMENT) + kind) * (int(segments.max(initial=0)) + 1) + segments
+    by_key = np.argsort(key, kind="stable")
+    for chosen in np.split(by_key, np.flatnonzero(np.diff(key[by_key])) + 1):
+        if len(chosen):
+            i = chosen[0]
+            points = strokes.points[strokes.first[chosen][:, None] + np.arange(counts[i])].reshape(-1, 2)
+            first = np.arange(len(chosen) + 1) * counts[i]
+            group = Strokes(strokes.width, strokes.height, points, first, strokes.widths[chosen])
+            yield list(SEGMENT)[kind[i]], int(segments[i]), group
+
+
+def _rows(kind: str, k: int, strokes: Strokes, units: int) -> tuple[Ints, Ints]:
+    """What a group's array holds, a row a stroke, its first two columns still empty; and x, y of both ends (s, 4)."""
+    exact = strokes.points.reshape(len(strokes), 3 * k + 1, 2) * (units, -units)
+    grid = words.whole(exact)
+    ends = np.hstack([grid[:, 0], grid[:, -1]])
+    rows = np.zeros((len(strokes), 2 + k * SEGMENT[kind] if k else 2), np.int64)
+    for j in range(k):
+        start, goal = grid[:, 3 * j], grid[:, 3 * j + 3]
+        numbers = rows[:, 2 + j * SEGMENT[kind] : 2 + (j + 1) * SEGMENT[kind]]
+        if kind == "c":
+            numbers[:] = (grid[:, 3 * j + 1 : 3 * j + 4] - start[:, None]).reshape(-1, 6)
+        else:
+            numbers[:, :2] = goal - start
+        if kind == "b":
+            numbers[:, 2:], _ = _bends(exact[:, 3 * j : 3 * j + 4])
+    return rows, ends
+
+
+def _bends(segments: Floats) -> tuple[Ints, Ints]:
+    """How far inner control points (s, 4, 2) lie to the left of the chord, as p and q (s, 2), and the kind of each.
+
+    Kind 1 is straight, 2 bends, 3 is neither: sliding its control points along the chord to a third and two
+    thirds would move its ink by more than half a unit.
+    """
+    chord = segments[:, 3] - segments[:, 0]
+    length = np.hypot(*chord.T)
+    safe = np.where(length > 0, length, 1.0)
+    along, left = np.empty((2, len(segments))), np.empty((2, len(segments)))
+    for i, third in enumerate((1 / 3, 2 / 3)):
+        control = segments[:, 1 + i] - segments[:, 0]
+        along[i] = np.abs((control * chord).sum(axis=1) / safe - third * length)
+        left[i] = (chord[:, 0] * control[:, 1] - chord[:, 1] * control[:, 0]) / safe
+    slide = along.max(axis=0)
+    slope = 3 * np.maximum(np.abs(left).max(axis=0), np.abs(left[1] - left[0])) / safe
+    whole = words.whole(left)
+    usual = (slide <= length / 4) & (slide * slope <= 0.5) & (length >= 2)
+    kinds: npt.NDArray[np.int64] = np.where(usual, np.where((whole == 0).all(axis=0), 1, 2), 3)
+    return np.stack([whole[0], whole[1] - whole[0]], axis=1), kinds
+
+
+def _split(strokes: Strokes) -> Strokes:
+    """Strokes of more than CHAIN segments in pieces; round caps make that invisible."""
+    counts = np.diff(strokes.first)
+    if counts.max(initial=0) <= 3 * CHAIN + 1:
+        return strokes
+    points, first, widths = [], [0], []
+    for i, width in enumerate(strokes.widths.tolist()):
+        control = strokes[i]
+        for start in range(0, max(1, len(control) - 1), 3 * CHAIN):
+            piece = control[start : start + 3 * CHAIN + 1]
+            points.append(piece)
+            first.append(first[-1] + len(piece))
+            widths.append(width)
+    return replace(strokes, points=np.concatenate(points), first=np.array(first, np.int64), widths=np.array(widths))
+
+
+def _ascii85(text: bytes) -> bytes:
+    """Deflated, and in printable characters on lines of 240; none begins with %."""
+    import base64
+    import zlib
+
+    # Z_FILTERED: in lists of numbers short repetitions cost more than they save; 3 % smaller than the default.
+    deflate = zlib.compressobj(9, zlib.DEFLATED, 15, 8, zlib.Z_FILTERED)
+    coded = base64.a85encode(deflate.compress(text) + deflate.flush())
+    lines = [coded[i : i + 240] for i in range(0, len(coded), 240)]
+    # A line that begins with %% would look like a comment of the structure; white space is ignored.
+    return b"\n".join(b" " + line if line.startswith(b"%") else line for line in lines) + b"~>\n"
+
+
+def _number(value: float, decimals: int = 3) -> bytes:
+    """Without needless zeros, never -0."""
+    text = f"{value:.{decimals}f}".rstrip("0").rstrip(".")
+    return b"0" if text == "-0" else text.encode("ascii")
+
+
+def _text(name: str) -> bytes:
+    """A string of the structuring conventions: 7 bits, one line, at most 80 characters of the name."""
+    coded = b""
+    for byte in name[:80].encode("utf-8", "replace"):
+        if byte in b"()\\" or not 32 <= byte < 127:
+            coded += b"\\%03o" % byte
+        else:
+            coded += bytes([byte])
+    return b"(%s)" % coded

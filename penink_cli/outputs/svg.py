@@ -1,0 +1,82 @@
+"""Strokes as SVG, in millimetres, a path each.
+
+Layers are groups that Inkscape shows as layers. Their labels begin with their number, as vpype
+and AxiDraw take the first digits of a label for the layer's number.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from xml.sax.saxutils import quoteattr
+
+import numpy as np
+
+from penink_cli.formats.strokes import Sink
+from penink_cli.ground.model import Strokes
+from penink_cli.outputs import words
+from penink_cli.outputs.page import Page
+
+MM = 25.4 / 72
+DECIMALS = 3  # micrometres
+BATCH = 20000
+
+
+def write(
+    out: Sink, layers: Sequence[Strokes], page: Page, colours: Sequence[tuple[float, float, float]] = ()
+) -> None:
+    """Write an SVG 1.1 file; the first layer is at the bottom. Colours: red, green, blue (0 … 1) of each layer."""
+    width, height = _number(page.width * MM), _number(page.height * MM)
+    out.write(
+        '<?xml version="1.0" encoding="UTF-8"?>\n'
+        '<svg xmlns="http://www.w3.org/2000/svg" xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape"\n'
+        f'     version="1.1" width="{width}mm" height="{height}mm" viewBox="0 0 {width} {height}">\n'.encode()
+    )
+    for i, layer in enumerate(layers):
+        label = f"{i + 1} {_xml(layer.layer)}" if layer.layer else f"{i + 1}"
+        red, green, blue = colours[i] if i < len(colours) else (0.0, 0.0, 0.0)
+        pens, counts = np.unique(layer.widths, return_counts=True)
+        pen = float(pens[np.argmax(counts)]) if len(pens) else 1.0
+        out.write(
+            f'<g id="layer{i + 1}" inkscape:groupmode="layer" inkscape:label={quoteattr(label)}\n'
+            f'   fill="none" stroke="#{_hex(red)}{_hex(green)}{_hex(blue)}" stroke-width="{_number(pen * MM, 4)}" '
+            'stroke-linecap="round" stroke-linejoin="round">\n'.encode()
+        )
+        for start in range(0, len(layer), BATCH):
+            out.write(_paths(layer, start, min(start + BATCH, len(layer)), page, pen))
+        out.write(b"</g>\n")
+    out.write(b"</svg>\n")
+
+
+def _paths(layer: Strokes, start: int, stop: int, page: Page, usual: float) -> memoryview:
+    """Strokes start … stop - 1, each a path: M x y and cubic segments relative to where they begin."""
+    first = layer.first[start : stop + 1] - layer.first[start]
+    counts = np.diff(first)
+    points = layer.points[layer.first[start] : layer.first[stop]] + np.array((page.x, page.y))
+    grid = words.whole(points * (MM * 10**DECIMALS))
+    inner = np.arange(len(grid)) - np.repeat(first[:-1], counts)
+    origin = np.arange(len(grid)) - np.where(inner > 0, (inner - 1) % 3 + 1, 0)
+    numbers = np.where((inner > 0)[:, None], grid - grid[origin], grid)
+    pens, pen = np.unique(layer.widths[start:stop], return_inverse=True)
+    begin = b'<path d="M'
+    ends = [b"" if p == usual else b' stroke-width="%s"' % _number(p * MM, 4).encode() for p in pens.tolist()]
+    # A dot is a line of a micrometre: one without length is not drawn by all, and dropped by vpype.
+    lines = [b'"%s/>\n%s' % (end, begin) for end in ends]
+    table = [b" ", b"c", begin, *lines, *(b"h.001" + line for line in lines)]
+    after = np.zeros((len(grid), 2), np.int32)
+    after[first[:-1], 1] = 1
+    after[first[1:] - 1, 1] = 3 + pen + np.where(counts == 1, len(ends), 0)
+    body = words.text(numbers.ravel(), after.ravel(), table, DECIMALS)
+    return memoryview(begin + bytes(body[: len(body) - len(begin)]))
+
+
+def _xml(name: str) -> str:
+    """The name with what XML cannot hold replaced."""
+    return "".join(c if c.isprintable() else "\ufffd" for c in name).encode("utf-8", "replace").decode()
+
+
+def _hex(value: float) -> str:
+    return f"{round(value * 255):02x}"
+
+
+def _number(value: float, decimals: int = DECIMALS) -> str:
+    return f"{value:.{decimals}f}".rstrip("0").rstrip(".")

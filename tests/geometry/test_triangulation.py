@@ -1,0 +1,96 @@
+"""The triangulation of an arrangement: a validator of the mesh, its regions, and walking to a point."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from penink_cli.geometry.triangulation import triangulate
+from penink_cli.ground.errors import ArrangementError
+from penink_cli.ground.model import EdgeList
+from tests.oracles.brute import turn
+from tests.reconstruction.arrangements import HOSTILE, edge_list, random_edges
+
+
+def validate(mesh, edges):
+    """Turns, areas, reciprocal neighbours, edges on both their sides."""
+    v = [tuple(p) for p in mesh.vertices.tolist()]
+    area = 0.0
+    for t, corners in enumerate(mesh.triangles.tolist()):
+        a, b, c = (v[k] for k in corners)
+        assert turn(a, b, c) > 0
+        area += ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])) / 2
+        for k in range(3):
+            beyond = mesh.neighbours[t, k]
+            side = {corners[k], corners[(k + 1) % 3]}
+            if beyond < 0:
+                assert all(
+                    any(v[i][axis] in (0, size) for axis, size in ((0, edges.width), (1, edges.height))) for i in side
+                )
+                continue
+            back = mesh.neighbours[beyond].tolist().index(t)
+            other = mesh.triangles[beyond].tolist()
+            assert side == {other[back], other[(back + 1) % 3]}
+            assert mesh.fixed[t, k] == mesh.fixed[beyond, back]
+            assert mesh.fixed[t, k] or mesh.regions[t] == mesh.regions[beyond]
+    assert area == pytest.approx(edges.width * edges.height)
+    ends = {tuple(sorted(e)) for e in edges.edges.tolist()}
+    found = {
+        tuple(sorted((int(mesh.source[corners[k]]), int(mesh.source[corners[(k + 1) % 3]]))))
+        for corners, fixed in zip(mesh.triangles, mesh.fixed)
+        for k in range(3)
+        if fixed[k]
+    }
+    assert found == ends
+
+
+@pytest.mark.parametrize("name", HOSTILE)
+def test_every_mesh_is_sound(name):
+    validate(triangulate(HOSTILE[name]), HOSTILE[name])
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_random_meshes_are_sound(seed):
+    rng = np.random.default_rng(seed)
+    edges = random_edges(rng, 9, 7, 40, lattice=[None, 2][seed % 2])
+    validate(triangulate(edges), edges)
+
+
+def test_regions_are_what_edges_enclose():
+    def count(name):
+        return triangulate(HOSTILE[name]).regions.max() + 1
+
+    assert count("none") == 1
+    assert count("nearly closed square") == 1
+    assert count("closed square") == 2
+    assert count("wall from side to side") == 2
+    assert count("frame") == 1
+    two = edge_list(9, 5, [(1, 1), (4, 1), (4, 4), (1, 4), (7, 1), (7, 4)],
+                    [(0, 1), (1, 2), (2, 3), (3, 0), (1, 4), (4, 5), (5, 2)])  # fmt: skip
+    mesh = triangulate(two)
+    a, b, c, d = mesh.regions_of(np.array([(2.0, 2.0), (5.0, 3.0), (8.0, 2.0), (0.5, 4.5)]))
+    assert len({a, b, c}) == 3
+    assert c == d
+
+
+@pytest.mark.parametrize("name", ["through samples", "spiral", "star", "tiny", "closed square"])
+def test_walking_finds_the_triangle_from_anywhere(name):
+    mesh = triangulate(HOSTILE[name])
+    rng = np.random.default_rng(0)
+    lattice = np.stack(np.meshgrid(np.arange(0, 6, 0.5), np.arange(0, 5, 0.5)), -1).reshape(-1, 2)
+    for x, y in np.concatenate([rng.uniform(0, 5, (40, 2)), lattice]):
+        found = {mesh.locate(x, y, int(t)) for t in rng.integers(0, len(mesh.triangles), 4)}
+        assert len(found) == 1
+        corners = mesh.triangles[found.pop()]
+        assert all(mesh.side(corners[k], corners[(k + 1) % 3], x, y) > 0 for k in range(3))
+
+
+def test_a_point_outside_the_frame_is_refused():
+    with pytest.raises(ArrangementError, match="outside the frame"):
+        triangulate(HOSTILE["star"]).locate(7.0, 2.0)
+
+
+def test_crossing_edges_are_refused_here_too():
+    crossing = EdgeList(9, 9, np.array([(1.0, 1), (8, 8), (1, 8), (8, 1)]), np.array([(0, 1), (2, 3)]))
+    with pytest.raises(ArrangementError, match="cross"):
+        triangulate(crossing)

@@ -1,0 +1,103 @@
+"""The house's plan: imports point downward, compiled ones too, and libraries are met where they may be known."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from tests.conftest import ROOT
+
+HOUSE = ROOT / "penink_cli"
+#: The rooms from the ground up: each may import those before it, and itself.
+FLOORS = (
+    ("ground",),
+    ("geometry", "travel"),
+    ("arrangement", "reconstruction", "textures", "formats"),
+    ("composition", "directions"),
+    ("blasting",),
+    ("outputs", "selfdrawing"),
+    ("illustration",),
+    ("options",),
+    ("main",),
+    ("manual",),
+    ("commands",),
+    ("__main__",),
+)
+FLOOR = {room: floor for floor, rooms in enumerate(FLOORS) for room in rooms}
+ALGORITHMS = ("geometry", "travel", "composition", "directions", "arrangement", "reconstruction", "blasting")
+#: Libraries, and the rooms that must not know them.
+STRANGERS = {
+    "click": (*ALGORITHMS, "ground", "textures", "formats", "outputs", "illustration", "selfdrawing"),
+    "PIL": (*ALGORITHMS, "textures", "illustration"),
+    "json": ALGORITHMS,
+    "sys": ALGORITHMS,
+}
+
+Import = tuple[str, str, int]  # file, module imported, line
+
+
+def _python(path: Path) -> Iterator[Import]:
+    for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+        if isinstance(node, ast.Import):
+            for name in node.names:
+                yield str(path), name.name, node.lineno
+        elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
+            for name in node.names:
+                yield str(path), f"{node.module}.{name.name}", node.lineno
+
+
+CYTHON = re.compile(r"^\s*(?:from\s+([\w.]+)\s+)?c?import\s+([\w.]+)", re.MULTILINE)
+
+
+def _cython(path: str, text: str) -> Iterator[Import]:
+    for match in CYTHON.finditer(text):
+        module = f"{match[1]}.{match[2]}" if match[1] else match[2]
+        yield path, module, text.count("\n", 0, match.start()) + 1
+
+
+def _imports() -> Iterator[Import]:
+    for path in sorted(HOUSE.rglob("*")):
+        if path.suffix == ".py":
+            yield from _python(path)
+        if path.suffix in (".pyx", ".pxd") or (path.suffix == ".py" and path.name.startswith("_")):
+            yield from _cython(str(path), path.read_text("utf-8"))
+
+
+def _room(path: str) -> str:
+    return Path(path).relative_to(HOUSE).parts[0].removesuffix(".py")
+
+
+def test_imports_point_downward() -> None:
+    upward = []
+    for path, module, line in _imports():
+        here, parts = _room(path), module.split(".")
+        if parts[0] != "penink_cli" or here == "__init__" or len(parts) == 1 or parts[1] not in FLOOR:
+            continue
+        there = parts[1]
+        if there != here and FLOOR[there] >= FLOOR[here]:
+            upward.append(f"{path}:{line}: {here} imports {module}, which is not below it")
+    assert not upward, "\n".join(upward)
+
+
+def test_every_room_is_on_the_plan() -> None:
+    rooms = {path.name for path in HOUSE.iterdir() if (path / "__init__.py").exists()}
+    assert rooms <= FLOOR.keys(), f"not on the plan: {', '.join(sorted(rooms - FLOOR.keys()))}"
+
+
+@pytest.mark.parametrize("library", STRANGERS)
+def test_rooms_know_no_strangers(library: str) -> None:
+    met = [
+        f"{path}:{line}"
+        for path, module, line in _imports()
+        if module.split(".")[0] == library and _room(path) in STRANGERS[library]
+    ]
+    assert not met, "\n".join(met)
+
+
+def test_compiled_imports_are_seen() -> None:
+    text = "from penink_cli.blasting.sheet cimport x\n"
+    assert list(_cython("x.pyx", text)) == [("x.pyx", "penink_cli.blasting.sheet.x", 1)]
