@@ -27,6 +27,7 @@ from penink_cli.ground.errors import PeninkError, printable
 # Subcommand -> (module in penink_cli.commands, first line of its help). A table, so that neither
 # `penink --help` nor one subcommand pays for the imports of all others.
 SUBCOMMANDS = {
+    "compose": ("compose", "Make the grey that a drawing is to have, from a photo."),
     "detect-edges": ("detect_edges", "Find the discontinuity edges of a photograph."),
     "extract-samples": ("extract_samples", "Take grey samples that no edge has contaminated."),
     "show-edges": ("show_edges", "Draw a photograph with its edges, for people to look at."),

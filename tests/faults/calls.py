@@ -28,6 +28,7 @@ class Call:
 
 
 CALLS = {
+    "compose": Call("photo.png", ("--width", "0.35in")),
     "detect-edges": Call("photo.png"),
     "extract-samples": Call("photo.png", ("-e", "photo.edges.json")),
     "reduce": Call("samples.pgm", ("-e", "photo.edges.json", "--factor", "2")),

@@ -1,0 +1,140 @@
+# cython: language_level=3, boundscheck=False, wraparound=False, cdivision=True
+"""Loops over rows of a picture: means of areas, separable symmetric filters, linear enlarging.
+
+Every number is a sum in one fixed order, whatever rows a call is given, so threads may share the rows as they like.
+"""
+
+from libc.stdlib cimport free, malloc
+
+COMPILED = True
+
+ctypedef fused stored:
+    const unsigned char
+    const unsigned short
+    const float
+
+
+def shrink(stored[:, :, ::1] values, float scale, float[:, :, ::1] out, Py_ssize_t top, Py_ssize_t bottom):
+    """Rows top … bottom of out (h, w, channels): the means of values (H, W, channels) over each pixel, times scale."""
+    cdef Py_ssize_t rows = values.shape[0], columns = values.shape[1], channels = values.shape[2]
+    cdef Py_ssize_t h = out.shape[0], w = out.shape[1], long_row = columns * channels
+    cdef Py_ssize_t y, x, r, c, k, first, last
+    cdef double down = <double>rows / h, across = <double>columns / w, low, high
+    cdef float part, total, area = <float>(scale / (down * across))
+    cdef float *sums = <float *>malloc(long_row * sizeof(float))
+    if sums == NULL:
+        raise MemoryError
+    with nogil:
+        for y in range(top, bottom):
+            low, high = y * down, (y + 1) * down
+            first, last = <Py_ssize_t>low, min(<Py_ssize_t>high, rows - 1)
+            for k in range(long_row):
+                sums[k] = 0
+            for r in range(first, last + 1):
+                part = <float>(min(high, r + 1.0) - max(low, <double>r))
+                if part > 0:
+                    for k in range(long_row):
+                        sums[k] += part * <float>(&values[r, 0, 0])[k]
+            for x in range(w):
+                low, high = x * across, (x + 1) * across
+                first, last = <Py_ssize_t>low, min(<Py_ssize_t>high, columns - 1)
+                for c in range(channels):
+                    total = 0
+                    for k in range(first, last + 1):
+                        part = <float>(min(high, k + 1.0) - max(low, <double>k))
+                        if part > 0:
+                            total += part * sums[k * channels + c]
+                    out[y, x, c] = total * area
+    free(sums)
+
+
+cdef inline Py_ssize_t within(Py_ssize_t i, Py_ssize_t n) noexcept nogil:
+    """The frame mirrored at its sides, as often as needed."""
+    cdef Py_ssize_t period = 2 * n
+    i = i % period
+    if i < 0:
+        i += period
+    return period - 1 - i if i >= n else i
+
+
+def across(const float[:, ::1] values, const float[::1] weights, float[:, ::1] out, Py_ssize_t top, Py_ssize_t bottom):
+    """Rows top … bottom of out (h, w): values filtered along rows by weights, the middle one first, mirrored."""
+    cdef Py_ssize_t w = values.shape[1], n = weights.shape[0], y, x, k
+    cdef float weight
+    cdef float *wide = <float *>malloc((w + 2 * n) * sizeof(float))
+    cdef float *middle = wide + n
+    cdef float *row
+    if wide == NULL:
+        raise MemoryError
+    with nogil:
+        for y in range(top, bottom):
+            for x in range(w):
+                middle[x] = values[y, x]
+            for k in range(n):
+                middle[-1 - k] = values[y, within(-1 - k, w)]
+                middle[w + k] = values[y, within(w + k, w)]
+            row = &out[y, 0]
+            weight = weights[0]
+            for x in range(w):
+                row[x] = weight * middle[x]
+            for k in range(1, n):
+                weight = weights[k]
+                for x in range(w):
+                    row[x] += weight * (middle[x - k] + middle[x + k])
+    free(wide)
+
+
+def down(const float[:, ::1] values, const float[::1] weights, float[:, ::1] out, Py_ssize_t top, Py_ssize_t bottom):
+    """Rows top … bottom of out (h, w): values filtered along columns by weights, the middle one first, mirrored."""
+    cdef Py_ssize_t h = values.shape[0], w = values.shape[1], n = weights.shape[0], y, x, k
+    cdef float weight
+    cdef const float *above
+    cdef const float *below
+    cdef float *row
+    with nogil:
+        for y in range(top, bottom):
+            row = &out[y, 0]
+            above = &values[y, 0]
+            weight = weights[0]
+            for x in range(w):
+                row[x] = weight * above[x]
+            for k in range(1, n):
+                weight = weights[k]
+                above, below = &values[within(y - k, h), 0], &values[within(y + k, h), 0]
+                for x in range(w):
+                    row[x] += weight * (above[x] + below[x])
+
+
+def enlarge(const float[:, ::1] values, float[:, ::1] out, Py_ssize_t top, Py_ssize_t bottom):
+    """Rows top … bottom of out (h, w): values (rows, columns) of the same frame, linear in between."""
+    cdef Py_ssize_t rows = values.shape[0], columns = values.shape[1], h = out.shape[0], w = out.shape[1], y, x, i
+    cdef double at
+    cdef float share
+    cdef const float *above
+    cdef const float *below
+    cdef float *mixed = <float *>malloc(columns * sizeof(float))
+    cdef float *shares = <float *>malloc(w * sizeof(float))
+    cdef Py_ssize_t *left = <Py_ssize_t *>malloc(w * sizeof(Py_ssize_t))
+    if mixed == NULL or shares == NULL or left == NULL:
+        free(mixed)
+        free(shares)
+        free(left)
+        raise MemoryError
+    with nogil:
+        for x in range(w):
+            at = min(max((x + 0.5) * columns / w - 0.5, 0.0), columns - 1.0)
+            left[x] = max(0, min(<Py_ssize_t>at, columns - 2))
+            shares[x] = <float>(at - left[x])
+        for y in range(top, bottom):
+            at = min(max((y + 0.5) * rows / h - 0.5, 0.0), rows - 1.0)
+            i = max(0, min(<Py_ssize_t>at, rows - 2))
+            share = <float>(at - i)
+            above, below = &values[i, 0], &values[min(i + 1, rows - 1), 0]
+            for x in range(columns):
+                mixed[x] = above[x] + share * (below[x] - above[x])
+            for x in range(w):
+                i = left[x]
+                out[y, x] = mixed[i] + shares[x] * (mixed[min(i + 1, columns - 1)] - mixed[i])
+    free(mixed)
+    free(shares)
+    free(left)

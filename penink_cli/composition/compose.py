@@ -1,0 +1,189 @@
+"""A photograph to the grey that a drawing of it is made from: the stages of composition in their order.
+
+    colours -> rim left out -> grey by a mix -> black and white points -> base and detail
+            -> base exposed -> detail raised -> relief given ink -> ends -> faded out where a mask says
+
+Lengths are points on paper, at the size that the picture is composed for; grey 0 is ink and 1 is paper.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from penink_cli.arrangement.gradient import noise_level
+from penink_cli.composition import exposure, mixing, relief
+from penink_cli.composition.filters import Picture, blurred, looked_up, shrunk
+from penink_cli.errors import ParameterError
+from penink_cli.model import ColourImage, GreyImage
+
+STRENGTH, DETAIL = 0.6, 1.8
+PIXELS_PER_PT = 4.0  # what a drawing can show, and no more is worked on
+
+_WHOLE_FROM = 0.3  # of the strength: below, the result goes over to the luma as stored
+_POINTS, _POINTS_BLUR_PT, _LEAST_RANGE = 0.003, 0.35, 0.25  # shares of the picture beyond black and white
+_EYE_PT, _BROAD_PT, _AROUND_PT = 0.7, 4.0, 9.0  # activity: what lies between the first two, around within the third
+_BACKGROUND, _BUSY, _MOST_BUSY = 0.25, 0.8, 1.5  # the weight of places without activity; its quantile that counts 1
+_PAGE, _PAGE_PAPER = 0.5, 0.985  # a picture more than half of which is so light is a page: its paper stays
+_INK, _PAPER = 0.05, 0.95  # what is darker is solid, what is lighter is bare
+_NARROW = 0.35  # of the range of grey: a photograph that uses no more is told of
+
+
+@dataclass(frozen=True)
+class Choice:
+    """How a picture is composed.
+
+    width_pt: of the drawing on paper.
+    strength: 0 … 1, how far tones are moved; 0 is the luma as stored.
+    detail: how much detail is raised; 1 leaves it as it is.
+    mix: weights of red, green and blue, None to choose.
+    target: the tone distribution.
+    fade_pt: over which the drawing fades out within the mask's border.
+    """
+
+    width_pt: float
+    strength: float = STRENGTH
+    detail: float = DETAIL
+    mix: mixing.Weights | None = None
+    target: exposure.Quantiles = exposure.TARGETS["house"]
+    pixels_per_pt: float = PIXELS_PER_PT
+    fade_pt: float = 0.0
+
+
+def working_size(shape: tuple[int, ...], width_pt: float, pixels_per_pt: float = PIXELS_PER_PT) -> tuple[int, int]:
+    """Width and height of the grey: the photo's own, or as many pixels as the drawing can show."""
+    height, width = shape[:2]
+    most = max(2, math.floor(width_pt * pixels_per_pt + 0.5))
+    if width <= most:
+        return width, height
+    return most, max(1, math.floor(height * most / width + 0.5))
+
+
+def compose(
+    photo: GreyImage | ColourImage,
+    choice: Choice,
+    luma: Callable[[ColourImage], GreyImage],
+    mask: GreyImage | None = None,
+    *,
+    oval: bool = False,
+    threads: int = 1,
+    report: Callable[[str], None] = lambda line: None,
+) -> Picture:
+    """Grey (h, w), 0 ink … 1 paper, of `working_size`.
+
+    luma: what makes grey of colours where nothing is composed.
+    mask: of the photo's size, white where the picture is drawn. oval: without a mask, the frame's oval is one.
+    report: receives a line for each thing that was chosen.
+
+    Raises ParameterError for a mask of another size.
+    """
+    if mask is not None and mask.values.shape != photo.values.shape[:2]:
+        (h, w), (rows, columns) = photo.values.shape[:2], mask.values.shape
+        raise ParameterError(f"the mask has {columns} x {rows} pixels; the photo has {w} x {h}")
+    width, height = working_size(photo.values.shape, choice.width_pt, choice.pixels_per_pt)
+    pt = width / choice.width_pt
+    fade = _fade(mask, width, height, choice.fade_pt * pt, oval, threads)
+    stored: Picture | None = None
+    if choice.strength < _WHOLE_FROM:
+        plain = luma(photo) if isinstance(photo, ColourImage) else photo
+        stored = _sized(plain, width, height, threads)
+    result = stored
+    if choice.strength > 0:
+        values = mixing.without_rim(photo.values, photo.maxval)
+        if values is not photo.values:
+            report("a rim along the frame is left out")
+        composed = _composed(_scaled(values, photo.maxval, width, height, threads), choice, pt, fade, threads, report)
+        part = min(1.0, choice.strength / _WHOLE_FROM)
+        result = composed if stored is None else stored + np.float32(part) * (composed - stored)
+    assert result is not None
+    return result if fade is None else 1 - (1 - result) * fade
+
+
+def _composed(
+    colours: Picture, choice: Choice, pt: float, fade: Picture | None, threads: int, report: Callable[[str], None]
+) -> Picture:
+    """The composition proper of (h, w) or (h, w, 3); pt: pixels a point."""
+    strength = max(choice.strength, _WHOLE_FROM)
+    if colours.ndim == 3:
+        mix = choice.mix or mixing.chosen_mix(colours, pt)
+        grey = mixing.mixed(colours, mix)
+        report(f"mix {mix[0]:g},{mix[1]:g},{mix[2]:g}")
+    else:
+        grey = colours
+    black, white = points(grey, pt, fade, threads)
+    report(f"black point {black:.3f}, white point {white:.3f}")
+    grey = np.clip((grey - np.float32(black)) * np.float32(1 / (white - black)), 0, 1)
+    noise = noise_level(grey)
+    broad = relief.base(grey, pt, threads)
+    detail = grey - broad
+    weight = _weight(grey, noise, pt, threads)
+    upto = exposure.histogram(broad, weight if fade is None else weight * fade)
+    table, slope = exposure.curve(upto, choice.target, strength)
+    exposed = looked_up(broad, table)
+    # slopes belong to the middle of their steps
+    slopes = looked_up(broad, slope, 0.5 / exposure.STEPS, 1 - 0.5 / exposure.STEPS)
+    result = relief.raised(detail, exposed, slopes, choice.detail, noise, pt, threads)
+    result = np.clip((result - np.float32(_INK)) * np.float32(1 / (_PAPER - _INK)), 0, 1)
+    paper = int((grey > _PAGE_PAPER).sum()) / grey.size
+    if paper > _PAGE:
+        report(f"a page: {paper:.0%} of it is paper, and stays so")
+        result = np.maximum(result, np.clip((grey - np.float32(0.9)) * np.float32(12.5), 0, 1))
+    return result
+
+
+def points(grey: Picture, pt: float, fade: Picture | None, threads: int) -> tuple[float, float]:
+    """The greys that become black and white."""
+    upto = exposure.histogram(np.clip(blurred(grey, _POINTS_BLUR_PT * pt, threads), 0, 1), fade, 4096)
+    black, white = exposure.quantile(upto, _POINTS), exposure.quantile(upto, 1 - _POINTS)
+    if white - black < _LEAST_RANGE:  # a picture of nearly one grey is not torn apart
+        middle = min(max((black + white) / 2, _LEAST_RANGE / 2), 1 - _LEAST_RANGE / 2)
+        black, white = min(black, middle - _LEAST_RANGE / 2), max(white, middle + _LEAST_RANGE / 2)
+    return black, white
+
+
+def narrow_range(photo: GreyImage | ColourImage) -> float | None:
+    """The share of the range of values that a photo uses, where it is small; one of a single value says nothing."""
+    counts = np.bincount(photo.values.ravel(), minlength=photo.maxval + 1)
+    upto = np.cumsum(counts) / photo.values.size
+    used = int(np.searchsorted(upto, 1 - _POINTS)) - int(np.searchsorted(upto, _POINTS))
+    return used / photo.maxval if 0 < used < _NARROW * photo.maxval else None
+
+
+def _weight(grey: Picture, noise: float, pt: float, threads: int) -> Picture:
+    """How much each place counts for the exposure: the subject decides, not an empty background."""
+    band = blurred(grey, _EYE_PT * pt, threads) - blurred(grey, _BROAD_PT * pt, threads)
+    busy = np.maximum(0, band * band - np.float32(0.3 * noise * noise))
+    activity = np.sqrt(np.maximum(blurred(busy, _AROUND_PT * pt, threads), 0))
+    usual = max(0.01, exposure.quantile(exposure.histogram(np.minimum(activity, 1), None, 4096), _BUSY))
+    return np.float32(_BACKGROUND) + np.minimum(np.float32(_MOST_BUSY), activity * np.float32(1 / usual))
+
+
+def _scaled(values: np.ndarray, maxval: int, width: int, height: int, threads: int) -> Picture:
+    """Values 0 … 1 at the working size."""
+    if values.shape[:2] == (height, width):
+        return np.divide(values, maxval, dtype=np.float32)
+    return shrunk(values, width, height, 1 / maxval, threads)
+
+
+def _sized(photo: GreyImage, width: int, height: int, threads: int) -> Picture:
+    return _scaled(photo.values, photo.maxval, width, height, threads)
+
+
+def _fade(
+    mask: GreyImage | None, width: int, height: int, soft: float, oval: bool, threads: int
+) -> Picture | None:
+    """How much of the picture is drawn, 0 … 1: all within the mask, nothing at its border and beyond."""
+    if mask is None and not oval:
+        return None
+    if mask is not None:
+        drawn = _sized(mask, width, height, threads)
+    else:
+        y, x = np.ogrid[:height, :width]
+        a, b = (2 * x + 1 - width) / width, (2 * y + 1 - height) / height
+        drawn = (a * a + b * b <= 1).astype(np.float32)
+    if soft <= 0:
+        return drawn
+    return np.clip(2 * blurred(drawn, soft / 2, threads) - 1, 0, 1)

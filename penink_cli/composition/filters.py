@@ -1,0 +1,85 @@
+"""Smoothing and shrinking of pictures, the same numbers on every machine and for any number of threads.
+
+This module alone imports the compiled kernel. Pictures are float32 (h, w) of any range; frames are mirrored.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from functools import lru_cache
+
+import numpy as np
+import numpy.typing as npt
+
+from penink_cli.composition._compiled import filters
+from penink_cli.reconstruction import threads as threading
+
+Picture = npt.NDArray[np.float32]
+
+_BAND = 64  # rows of a task
+_COARSE, _KEPT = 4.0, 2.5  # a wider Gaussian (pixels) is that of a smaller view, of about that many pixels, enlarged
+
+
+def shrunk(values: npt.NDArray[np.generic], width: int, height: int, scale: float = 1.0, threads: int = 1) -> Picture:
+    """Means of values (h, w) or (h, w, channels) over the pixels of a picture of width × height, times scale."""
+    planes = np.ascontiguousarray(values if values.ndim == 3 else values[..., None])
+    out = np.empty((height, width, planes.shape[2]), np.float32)
+    _each(height, lambda top, bottom: filters.shrink(planes, scale, out, top, bottom), threads)
+    return out if values.ndim == 3 else out[..., 0]
+
+
+def enlarged(values: Picture, width: int, height: int, threads: int = 1) -> Picture:
+    """Values (h, w), linear in between, for a picture of width × height of the same frame."""
+    if values.shape == (height, width):
+        return values
+    values = np.ascontiguousarray(values)
+    out = np.empty((height, width), np.float32)
+    _each(height, lambda top, bottom: filters.enlarge(values, out, top, bottom), threads)
+    return out
+
+
+def blurred(values: Picture, sigma: float, threads: int = 1) -> Picture:
+    """A Gaussian low-pass of sigma pixels; a wide one nearly so, through a smaller view."""
+    height, width = values.shape
+    factor = int(sigma / _KEPT)
+    if sigma > _COARSE and min(height, width) >= 4 * factor:
+        across, down = -(-width // factor), -(-height // factor)
+        step = width / across
+        # means over areas and linear interpolation each have a variance of their own
+        rest = math.sqrt(max(0.0, (sigma / step) ** 2 - 1 / 12 - 1 / 6))
+        return enlarged(blurred(shrunk(values, across, down, threads=threads), rest, threads), width, height, threads)
+    weights = gaussian(sigma)
+    if len(weights) == 1:
+        return values.copy()
+    values = np.ascontiguousarray(values)
+    half, out = np.empty_like(values), np.empty_like(values)
+    _each(height, lambda top, bottom: filters.across(values, weights, half, top, bottom), threads)
+    _each(height, lambda top, bottom: filters.down(half, weights, out, top, bottom), threads)
+    return out
+
+
+@lru_cache
+def gaussian(sigma: float) -> Picture:
+    """Weights of a Gaussian from the middle one outwards; all, with their mirror images, sum to 1."""
+    if sigma < 0.2:
+        return np.ones(1, np.float32)
+    w = [round(math.exp(-0.5 * (k / sigma) ** 2), 9) for k in range(math.ceil(3 * sigma) + 1)]
+    total = w[0] + 2 * math.fsum(w[1:])
+    return np.array([v / total for v in w], np.float32)
+
+
+def looked_up(values: Picture, table: npt.NDArray[np.float64], low: float = 0.0, high: float = 1.0) -> Picture:
+    """The function that table (n,) holds at even steps from low to high, linear in between and constant beyond."""
+    steps = len(table) - 1
+    rising = np.append(np.diff(table), 0.0).astype(np.float32)
+    at = np.clip((values - np.float32(low)) * np.float32(steps / (high - low)), 0, steps)
+    i = at.astype(np.int32)
+    at -= i
+    at *= rising[i]
+    at += table.astype(np.float32)[i]
+    return at
+
+
+def _each(rows: int, work: Callable[[int, int], object], threads: int) -> None:
+    threading.share(threading.ranges(work, rows, _BAND), threads)

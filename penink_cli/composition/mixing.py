@@ -1,0 +1,131 @@
+"""The frame of a scan left out, and colours made grey by the weights of red, green and blue that keep most contrast.
+
+Luma gives many colours that differ to the eye the same grey: the red and the green of a parrot, say. So weights that
+sum to 1 are tried in steps of a tenth, and those taken that keep the most of the differences between places that lie
+near each other (after Gooch et al., Color2Gray, 2005, and Lu et al., Contrast Preserving Decolorization, 2012).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from penink_cli.composition.filters import Picture, looked_up, shrunk
+
+Weights = tuple[float, float, float]
+
+LUMA: Weights = (0.299, 0.587, 0.114)
+
+_BORDER, _SEEN = 8, 48  # lines along a side that may be a rim, and lines that are looked at
+_RIM, _TYPICAL, _STRONG = 0.025, 2.5, 1.5  # a rim's step: at least that, and so much above the picture's own
+
+_EYE_PT, _CELLS = 3.0, 128  # what the eye takes in at a glance is one cell, and at most so many cells a side
+_OFFSETS = ((0, 1), (1, 0), (2, 1), (-1, 2), (4, 0), (0, 4), (3, -3), (7, 2), (-2, 7), (8, -5))
+_UNSEEN = 0.05  # a difference of 5 units of Lab is none
+_LIGHT, _FAR, _NEGATIVE = 0.25, 0.0625, 0.3  # worth of a lighter grey; prices of being far from luma, and below 0
+_WHOLE = 1 << 20  # sums are of whole numbers: their order is not the same on every machine
+
+
+def without_rim(values: npt.NDArray[np.generic], maxval: int) -> npt.NDArray[np.generic]:
+    """The photo (h, w) or (h, w, 3) with up to 8 lines along each side replaced by the next, where a scan has a rim."""
+    result = values
+    for side in range(4):
+        lines = np.rot90(values, side)[:_SEEN].astype(np.float32) / np.float32(maxval)
+        if len(lines) < 2 * _BORDER:
+            continue
+        steps = np.abs(np.diff(lines, axis=0))
+        if steps.ndim == 3:
+            steps = (steps[..., 0] + steps[..., 1] + steps[..., 2]) / np.float32(3)
+        step = np.median(steps, axis=1)
+        inner = step[_BORDER + 2 :]
+        least = max(_RIM, _TYPICAL * float(np.median(inner)), _STRONG * float(np.sort(inner)[len(inner) * 9 // 10]))
+        found = [i for i in range(_BORDER) if step[i] > least]
+        if found:
+            if result is values:
+                result = values.copy()
+            turned = np.rot90(result, side)
+            turned[: found[-1] + 2] = turned[found[-1] + 2]
+    return result
+
+
+def chosen_mix(colours: Picture, pixels_per_pt: float) -> Weights:
+    """The weights of red, green and blue for colours (h, w, 3), 0 … 1, of which pixels_per_pt are a point on paper."""
+    height, width = colours.shape[:2]
+    cell = max(1.0, _EYE_PT * pixels_per_pt, max(height, width) / _CELLS)
+    small = shrunk(colours, max(1, round(width / cell)), max(1, round(height / cell)))
+    red, green, blue = (np.ascontiguousarray(small[..., k], np.float64) for k in range(3))
+    seen = lab(small)
+    pairs = [(a, b) for a, b in (_pair(red.shape, *by) for by in _OFFSETS) if red[a].size]
+    wanted = [np.sqrt(_squares(seen[a] - seen[b])) / 100 for a, b in pairs]
+    kept = [w > _UNSEEN for w in wanted]
+    wanted = [w[k] for w, k in zip(wanted, kept)]
+    whole = sum(_total(w) for w in wanted)
+    if not whole:
+        return LUMA
+    best: tuple[float, Weights] | None = None
+    for r in range(-2, 13):
+        for g in range(-2, 13):
+            b = 10 - r - g
+            if not -2 <= b <= 6:
+                continue
+            mix = (r / 10, g / 10, b / 10)
+            grey = mix[0] * red + mix[1] * green + mix[2] * blue
+            share = 0
+            for (one, other), w, k in zip(pairs, wanted, kept):
+                share += _total(np.minimum(np.abs(grey[one] - grey[other])[k], w))
+            clipped = int(((grey < 0) | (grey > 1)).sum()) / grey.size
+            worth = share / whole + _LIGHT * _total(np.clip(grey, 0, 1)) / (_WHOLE * grey.size) - clipped
+            worth -= _FAR * (abs(mix[0] - LUMA[0]) + abs(mix[1] - LUMA[1]) + abs(mix[2] - LUMA[2]))
+            worth -= _NEGATIVE * (max(0.0, -mix[0]) + max(0.0, -mix[1]) + max(0.0, -mix[2]))
+            if best is None or worth > best[0]:
+                best = worth, mix
+    assert best is not None
+    return best[1]
+
+
+def mixed(colours: Picture, mix: Weights) -> Picture:
+    """Grey (h, w) of colours (h, w, 3), 0 … 1 if they are."""
+    r, g, b = (np.float32(w) for w in mix)
+    return np.clip(r * colours[..., 0] + g * colours[..., 1] + b * colours[..., 2], 0, 1)
+
+
+def lab(colours: Picture) -> npt.NDArray[np.float64]:
+    """CIE Lab (h, w, 3) of sRGB (h, w, 3), white D65; by tables and Newton's method, the same on every machine."""
+    steps = [k / 1024 for k in range(1025)]
+    linear = np.array([round(v / 12.92 if v <= 0.04045 else ((v + 0.055) / 1.055) ** 2.4, 12) for v in steps])
+    r, g, b = (looked_up(colours[..., k], linear).astype(np.float64) for k in range(3))
+    x = _root((0.412453 * r + 0.357580 * g + 0.180423 * b) / 0.950456)
+    y = _root(0.212671 * r + 0.715160 * g + 0.072169 * b)
+    z = _root((0.019334 * r + 0.119193 * g + 0.950227 * b) / 1.088754)
+    return np.stack([116 * y - 16, 500 * (x - y), 200 * (y - z)], axis=-1)
+
+
+def _root(t: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    """CIE's cube root, with its straight piece near 0."""
+    least = 216 / 24389
+    v = np.maximum(t, least)
+    root = 0.25 + 0.75 * v
+    for _ in range(6):
+        root = root - (root * root * root - v) / (3 * root * root)
+    return np.where(t > least, root, (24389 / 27 * t + 16) / 116)
+
+
+def _pair(shape: tuple[int, ...], down: int, across: int) -> tuple[tuple[slice, slice], tuple[slice, slice]]:
+    """The cells that have another so far down and across, and those others."""
+    h, w = shape
+    a = slice(max(0, -down), h - max(0, down)), slice(max(0, -across), w - max(0, across))
+    b = slice(max(0, down), h - max(0, -down)), slice(max(0, across), w - max(0, -across))
+    if max(abs(down), 0) >= h or abs(across) >= w:
+        return (slice(0, 0), slice(0, 0)), (slice(0, 0), slice(0, 0))
+    return a, b
+
+
+def _squares(difference: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    """Squared distance, in which hue and saturation count less than lightness."""
+    d = difference * difference
+    squares: npt.NDArray[np.float64] = d[..., 0] + 0.6 * d[..., 1] + 0.6 * d[..., 2]
+    return squares
+
+
+def _total(values: npt.NDArray[np.float64]) -> int:
+    return int((values * _WHOLE).astype(np.int64).sum())

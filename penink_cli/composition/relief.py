@@ -1,0 +1,82 @@
+"""A picture as a base of broad tones and the detail upon it, and detail raised until a pen can show it.
+
+The base is a guided filter of the picture by itself (He, Sun and Tang 2013), made at a coarse grid (He and Sun 2015):
+it keeps strong edges, so that raising what is left makes no halo along them.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from penink_cli.composition.filters import Picture, blurred, enlarged, looked_up, shrunk
+
+_RADIUS_PT = 4.0  # of the Gaussian that the guided filter gathers with
+_FLAT = 0.045  # a local standard deviation of grey that is detail; what is well above is an edge
+_GRID_PT = 0.75  # of the base
+_FINE_PT, _FINE_SHARE = 0.5, 0.4  # what is finer a pen cannot show, and so much of it is kept
+_LIMIT = 0.4  # detail is not raised beyond that
+_USUAL, _OFFSET, _POWER, _LESS, _MORE = 0.055, 0.012, 0.4, 0.7, 1.5  # faint detail is raised more than strong
+_GAIN = np.array([round(((_USUAL) / (k / 512 + _OFFSET)) ** _POWER, 9) for k in range(257)]).clip(_LESS, _MORE)
+_RELIEF, _RELIEF_RANGE, _RELIEF_INK, _LIGHT = 0.045, 0.05, 0.6, 0.60  # where detail is that strong, lights come down
+
+
+def base(grey: Picture, pixels_per_pt: float, threads: int) -> Picture:
+    """Broad tones (h, w) of grey (h, w), sharp at strong edges."""
+    height, width = grey.shape
+    cell = max(1.0, _GRID_PT * pixels_per_pt)
+    w, h = max(1, round(width / cell)), max(1, round(height / cell))
+    small = grey if cell == 1 else shrunk(grey, w, h, threads=threads)
+    sigma = _RADIUS_PT * pixels_per_pt * w / width
+    mean = blurred(small, sigma, threads)
+    variance: Picture = np.maximum(blurred(small * small, sigma, threads) - mean * mean, 0)
+    kept: Picture = variance / (variance + np.float32(_FLAT * _FLAT))
+    rest = mean - kept * mean
+    slope, offset = (enlarged(blurred(v, sigma, threads), width, height, threads) for v in (kept, rest))
+    return np.clip(slope * grey + offset, 0, 1)
+
+
+def raised(
+    detail: Picture, lights: Picture, slope: Picture, gain: float, noise: float, pixels_per_pt: float, threads: int
+) -> Picture:
+    """The base `lights` (h, w) with the detail upon it.
+
+    slope: that of the exposure's curve at each pixel, which has raised or flattened the base.
+    gain: of detail of usual strength. noise: its standard deviation, grey.
+    """
+    pt = pixels_per_pt
+    middle = blurred(detail, _FINE_PT * pt, threads)
+    fine = detail - middle
+
+    def spread(values: Picture, sigma_pt: float) -> Picture:
+        return np.sqrt(np.maximum(blurred(values * values, sigma_pt * pt, threads), 0))
+
+    def guard(values: Picture, level: float) -> Picture:
+        """Values without what is no more than noise."""
+        if level <= 0:
+            return values
+        return values * np.clip((spread(values, 1.5) - np.float32(level)) / np.float32(2 * level), 0.15, 1)
+
+    each = looked_up(spread(middle, 6.0), _GAIN, 0.0, 0.5)
+    each *= np.float32(gain) * np.clip(slope, 0.8, 1.4)
+    drawn = _limited(each * guard(middle, 0.5 * noise)) + np.float32(_FINE_SHARE) * each * guard(fine, noise)
+    return _with_room(lights, drawn, pt, threads)
+
+
+def _with_room(lights: Picture, drawn: Picture, pt: float, threads: int) -> Picture:
+    """Relief needs ink: where there is much detail the lights come down to carry it, and darks rise a little."""
+    strong = np.sqrt(np.maximum(blurred(drawn * drawn, 5.0 * pt, threads), 0))
+    share = np.clip((strong - np.float32(_RELIEF)) / np.float32(_RELIEF_RANGE), 0, 1)
+    more = 1 + np.float32(0.7) * share * np.clip((lights - np.float32(0.5)) / np.float32(0.3), 0, 1)
+    result = lights - np.float32(_RELIEF_INK) * share * np.maximum(0, lights - np.float32(_LIGHT))
+    strong = strong * more
+    above = np.maximum(0, result + np.float32(1.6) * strong - 1)
+    result -= above * np.clip((strong - np.float32(0.02)) / np.float32(0.05), 0, 1)
+    below = np.maximum(0, np.float32(0.06) - (result - strong))
+    result += below * np.clip(strong / np.float32(0.05), 0, 1)
+    return result + _limited(drawn * more)
+
+
+def _limited(values: Picture) -> Picture:
+    """Values that grow ever slower towards ±0.4."""
+    part = values * np.float32(1 / _LIMIT)
+    return values / np.sqrt(1 + part * part)
