@@ -8,9 +8,9 @@ from typing import Any, TypeVar
 
 import click
 
-from penink_cli.commands.inputs import only_one_standard_input, read_colours, read_photo
-from penink_cli.errors import ParameterError, in_quotes
-from penink_cli.options import (
+from penink_cli.ground.errors import ParameterError, in_quotes
+from penink_cli.ground.streams import writing
+from penink_cli.options.common import (
     LENGTH,
     Finite,
     Length,
@@ -22,8 +22,8 @@ from penink_cli.options import (
     verbose_option,
     warn,
 )
-from penink_cli.papers import check_sheet
-from penink_cli.streams import writing
+from penink_cli.options.inputs import only_one_standard_input, read_colours, read_photo
+from penink_cli.options.sheet import check_sheet
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -168,7 +168,7 @@ def compose(
     """
     from penink_cli.composition import compose as composition
     from penink_cli.formats import pgm, photo
-    from penink_cli.model import GreyImage
+    from penink_cli.ground.model import GreyImage
 
     only_one_standard_input(file, mask)
     picture = read_colours(file, max_pixels)

@@ -17,8 +17,8 @@ import numpy as np
 from penink_cli.arrangement.gradient import noise_level
 from penink_cli.composition import exposure, mixing, relief
 from penink_cli.composition.filters import Picture, blurred, looked_up, shrunk
-from penink_cli.errors import ParameterError
-from penink_cli.model import ColourImage, GreyImage
+from penink_cli.ground.errors import ParameterError
+from penink_cli.ground.model import ColourImage, GreyImage
 
 STRENGTH, DETAIL = 0.6, 1.8
 PIXELS_PER_PT = 4.0  # what a drawing can show, and no more is worked on

@@ -12,8 +12,8 @@ from itertools import pairwise
 import numpy as np
 
 from penink_cli.composition.filters import Picture, gaussian
-from penink_cli.errors import ParameterError
-from penink_cli.model import Floats
+from penink_cli.ground.errors import ParameterError
+from penink_cli.ground.model import Floats
 
 Quantiles = tuple[tuple[float, float], ...]  # share of the picture that is darker, and its lightest grey
 

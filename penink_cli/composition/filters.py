@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from penink_cli.composition._compiled import filters
-from penink_cli.reconstruction import threads as threading
+from penink_cli.ground import threads as threading
 
 Picture = npt.NDArray[np.float32]
 

@@ -12,9 +12,9 @@ from scipy.ndimage import gaussian_filter
 
 from penink_cli.composition import exposure, filters, mixing
 from penink_cli.composition.compose import Choice, compose, narrow_range, working_size
-from penink_cli.errors import ParameterError
 from penink_cli.formats import pgm, photo
-from penink_cli.model import ColourImage, GreyImage
+from penink_cli.ground.errors import ParameterError
+from penink_cli.ground.model import ColourImage, GreyImage
 
 RNG = np.random.default_rng(5)
 
