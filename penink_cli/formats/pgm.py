@@ -50,17 +50,14 @@ def read(stream: BinaryIO, source: str, max_pixels: int) -> GreyImage:
 def read_raster(stream: BinaryIO, source: str, max_pixels: int, magic: bytes) -> tuple[Values, int]:
     """What follows the magic number of P2, P5 (values (h, w)) or P3, P6 (h, w, 3), and maxval."""
     channels = 3 if magic in (b"P3", b"P6") else 1
-    width, height, maxval = _header(stream, source)
-    for name, value in (("width", width), ("height", height)):
-        if value < 1:
-            raise FormatError(f"{name} is {value}; at least 1 is needed", source)
+    width, height, maxval = header_numbers(stream, source, 3)
     if not 1 <= maxval <= 65535:
         raise FormatError(f"maxval is {maxval}; 1 to 65535 are allowed", source)
     check_size(width, height, max_pixels, source)
     count = width * height * channels
     try:
         if magic in (b"P5", b"P6"):
-            flat = _binary(stream, source, count, maxval, width * channels)
+            flat = binary(stream, source, count, maxval, width * channels)
         else:
             flat = _plain(stream, source, count, maxval, width * channels)
     except MemoryError:
@@ -78,8 +75,8 @@ def _shown(found: bytes) -> str:
     return in_quotes(found.decode("latin-1"))
 
 
-def _header(stream: BinaryIO, source: str) -> tuple[int, int, int]:
-    """Width, height and maxval, read up to and with the one white space character before the raster."""
+def header_numbers(stream: BinaryIO, source: str, count: int) -> list[int]:
+    """Width, height and, where three are wanted, maxval, read up to and with the one white space before the raster."""
     numbers: list[int] = []
     place = ("width", "height", "maxval")
     value: int | None = None
@@ -98,8 +95,8 @@ def _header(stream: BinaryIO, source: str) -> tuple[int, int, int]:
             if value is not None:
                 numbers.append(value)
                 value = None
-                if len(numbers) == 3:
-                    return numbers[0], numbers[1], numbers[2]
+                if len(numbers) == count:
+                    return _checked(numbers, source)
         elif byte.isdigit() and separated:
             value = (value or 0) * 10 + int(byte)
             if value > MAX_VALUE:
@@ -110,7 +107,14 @@ def _header(stream: BinaryIO, source: str) -> tuple[int, int, int]:
     raise FormatError(f"the header is longer than {MAX_HEADER} bytes", source)
 
 
-def _binary(stream: BinaryIO, source: str, count: int, maxval: int, row: int) -> Values:
+def _checked(numbers: list[int], source: str) -> list[int]:
+    for name, value in zip(("width", "height"), numbers, strict=False):
+        if value < 1:
+            raise FormatError(f"{name} is {value}; at least 1 is needed", source)
+    return numbers
+
+
+def binary(stream: BinaryIO, source: str, count: int, maxval: int, row: int) -> Values:
     """``count`` values of one byte each, or of two, the most significant first."""
     stored = np.dtype(np.uint8) if maxval < 256 else np.dtype(">u2")
     flat: Values = np.empty(count, stored)

@@ -7,13 +7,14 @@ from __future__ import annotations
 
 import re
 
-from penink_cli.formats.signatures import SIGNATURES
 from penink_cli.ground.errors import FormatError, PeninkError
+from penink_cli.formats.signatures import NAMES, kind_of
 
 ENOUGH = 4096  # bytes to tell one kind from another
 
 _FORMAT = re.compile(rb'"format"\s*:\s*"penink-([a-z]+)"')
-_NETPBM = re.compile(rb"P([2356])[\s#]")
+_NETPBM = re.compile(rb"P([1-7])[\s#]")
+_NETPBM_NAMES = dict(zip((b"1", b"2", b"3", b"4", b"5", b"6", b"7"), ("PBM", "PGM", "PPM") * 2 + ("PAM",), strict=True))
 _NAMES = {
     "pgm": "a PGM image",
     "photo": "a photograph",
@@ -27,6 +28,48 @@ _NAMES = {
     "page": "a finished drawing",
     "foreign": "a picture of a kind that is not read",
 }
+# Pictures of other kinds: where their mark is, the mark, what they are.
+_FOREIGN = (
+    (0, b"8BPS", "a Photoshop picture"),
+    (0, b"\0\0\0\x0cjP  ", "a JPEG 2000 picture"),
+    (0, b"\xff\x4f\xff\x51", "a JPEG 2000 picture"),
+    (0, b"\0\0\0\x0cJXL ", "a JPEG XL picture"),
+    (0, b"\xff\x0a", "a JPEG XL picture"),
+    (0, b"II\xbc", "a JPEG XR picture"),
+    (8, b"crx ", "a camera raw (CR3)"),
+    (0, b"FUJIFILMCCD-RAW", "a camera raw (RAF)"),
+    (0, b"IIRO", "a camera raw (ORF)"),
+    (0, b"IIRS", "a camera raw (ORF)"),
+    (0, b"MMOR", "a camera raw (ORF)"),
+    (0, b"IIU\0", "a camera raw (RW2)"),
+    (0, b"FOVb", "a camera raw (X3F)"),
+    (0, b"\0MRM", "a camera raw (MRW)"),
+    (0, b"gimp xcf", "a GIMP picture"),
+    (0, b"v/1\x01", "an OpenEXR picture"),
+    (0, b"#?RADIANCE", "a Radiance HDR picture"),
+    (0, b"#?RGBE", "a Radiance HDR picture"),
+    (0, b"PF\n", "a PFM picture"),
+    (0, b"Pf\n", "a PFM picture"),
+    (0, b"DDS ", "a DDS picture"),
+    (0, b"qoif", "a QOI picture"),
+    (0, b"farbfeld", "a farbfeld picture"),
+    (0, b"\x0a\x05\x01", "a PCX picture"),
+    (0, b"\0\0\1\0", "an icon (ICO)"),
+    (0, b"icns", "an icon (ICNS)"),
+    (0, b"\x8aMNG", "an MNG animation"),
+    (0, b"\x8bJNG", "a JNG picture"),
+    (0, b"SIMPLE  =", "a FITS picture"),
+    (128, b"DICM", "a DICOM picture"),
+    (0, b"AT&TFORM", "a DjVu document"),
+    (0, b"\x01\xda", "an SGI picture"),
+    (0, b"\x59\xa6\x6a\x95", "a Sun raster picture"),
+    (0, b"FLIF", "a FLIF picture"),
+    (0, b"BPG\xfb", "a BPG picture"),
+    (0, b"/* XPM */", "an XPM picture"),
+    (4, b"ftyp", "a film, or a picture in a container of films, of a kind that is not read"),
+    (0, b"\xc5\xd0\xd3\xc6", "an EPS with a preview"),
+    (0, b"BM", "a BMP picture of a kind that is not read"),
+)  # fmt: skip
 
 # By what was wanted and what was found: the way out. "*" is for all that is wanted and not named.
 _WAYS = {
@@ -59,17 +102,19 @@ def kind(start: bytes) -> tuple[str, str] | None:
     >>> kind(b"P5 640 480 255 ")
     ('pgm', 'a PGM image')
     """
-    for signature, name in SIGNATURES:
-        if start.startswith(signature) and (name != "WEBP" or start[8:12] == b"WEBP"):
-            return "photo", f"a {name if name != 'WEBP' else 'WebP'} photograph"
+    if (photo := kind_of(start)) is not None:
+        shown = NAMES.get(photo, photo)
+        return "photo", f"{'an' if shown == 'AVIF' else 'a'} {shown} photograph"
     if found := _NETPBM.match(start):
-        return ("pgm", _NAMES["pgm"]) if found[1] in b"25" else ("photo", "a PPM photograph")
+        name = _NETPBM_NAMES[found[1]]
+        return ("pgm", _NAMES["pgm"]) if name == "PGM" else ("photo", f"a {name} photograph")
     if start.startswith((b"PK\x03\x04", b"PIs1", b"PIe1", b"PIt1")):
         return "illustration", "a packed illustration" if start.startswith(b"PK") else "a part of a packed illustration"
     if start.startswith((b"%!PS", b"%PDF-")):
         return "page", "PostScript" if start.startswith(b"%!") else "PDF"
-    if start[4:8] == b"ftyp" or start.startswith((b"GIF8", b"BM")):
-        return "foreign", _NAMES["foreign"]
+    for place, signature, name in _FOREIGN:
+        if start[place : place + len(signature)] == signature:
+            return "foreign", name
     head = start[:ENOUGH]
     if head.lstrip().startswith(b"{") and (found := _FORMAT.search(head)) and (name := found[1].decode()) in _NAMES:
         return name, _NAMES[name]

@@ -8,5 +8,35 @@ SIGNATURES = (
     (b"MM\x00*", "TIFF"),
     (b"II+\x00", "TIFF"),
     (b"MM\x00+", "TIFF"),
-    (b"RIFF", "WEBP"),
+    (b"GIF87a", "GIF"),
+    (b"GIF89a", "GIF"),
+    (b"BM", "BMP"),
 )
+# What the ISO base media files that are pictures say of themselves.
+BRANDS = {"AVIF": (b"avif", b"avis"), "HEIF": (b"heic", b"heix", b"heim", b"heis", b"hevc", b"hevx", b"mif1", b"msf1")}
+NAMES = {"WEBP": "WebP", "HEIF": "HEIC"}
+
+
+def kind_of(start: bytes) -> str | None:
+    """Pillow's name for the kind of photograph that begins so; None where it is none that is read.
+
+    >>> kind_of(b"RIFF1234WEBPVP8 ")
+    'WEBP'
+    """
+    if start[:4] == b"RIFF" and start[8:12] == b"WEBP":
+        return "WEBP"
+    if start[4:8] == b"ftyp":
+        brands = [
+            start[8:12],
+            *(start[i : i + 4] for i in range(16, min(len(start), int.from_bytes(start[:4], "big")), 4)),
+        ]
+        if b"crx " in brands:  # a camera raw
+            return None
+        return next((kind for brand in brands for kind, own in BRANDS.items() if brand in own), None)
+    found = next((name for signature, name in SIGNATURES if start.startswith(signature)), None)
+    # two letters are soon found: the size of a BMP's header says more
+    return (
+        None
+        if found == "BMP" and int.from_bytes(start[14:18], "little") not in (12, 40, 52, 56, 64, 108, 124)
+        else found
+    )

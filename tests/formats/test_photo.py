@@ -12,8 +12,9 @@ import pytest
 import skimage.data
 from PIL import Image
 
-from penink_cli.formats import damage, pgm, photo
 from penink_cli.ground.errors import FormatError, LimitError, PeninkError
+from penink_cli.formats import pgm, photo
+from penink_cli.formats.photo import png as png_reader
 from penink_cli.ground.model import ColourImage, GreyImage
 from tests.formats.readers import written
 
@@ -250,7 +251,7 @@ def test_the_rows_of_a_png_of_any_kind_are_counted(bits, colour, interlace):
     """The rows that each pass has by the definition, and not a byte less."""
     channels = {0: 1, 2: 3, 4: 2, 6: 4}[colour]
     width, height = 5, 6
-    passes = damage._PASSES if interlace else ((0, 0, 1, 1),)
+    passes = png_reader.PASSES if interlace else ((0, 0, 1, 1),)
     whole = 0
     for x, y, step_x, step_y in passes:
         columns, lines = len(range(x, width, step_x)), len(range(y, height, step_y))
@@ -269,11 +270,23 @@ def test_a_photograph_cut_short(kind, part):
         read(data[: int(part * len(data))])
 
 
-@pytest.mark.parametrize("kind", (*FORMATS, "PPM"))
+@pytest.mark.parametrize("kind", ("TIFF", "PPM"))
 def test_a_photograph_one_byte_short(kind):
     data = saved(Image.fromarray(COLOUR), kind)
     with pytest.raises(FormatError):
         read(data[:-1])
+
+
+@pytest.mark.parametrize("kind", ("PNG", "JPEG", "WEBP"))
+def test_a_photograph_without_its_end_is_whole_as_long_as_its_pixels_are(kind):
+    """The last byte of these carries no pixel: a line is said, and --strict refuses."""
+    data = saved(Image.fromarray(COLOUR), kind)
+    lines = []
+    cut = photo.read_grey(io.BytesIO(data[:-1]), "p.img", 10_000, say=lines.append)
+    assert np.array_equal(cut.values, read(data).values)
+    assert len(lines) == 1 and lines[0].startswith("p.img: ")
+    with pytest.raises(FormatError):
+        photo.read_grey(io.BytesIO(data[:-1]), "p.img", 10_000, photo.Choices(damage="strict"))
 
 
 @pytest.mark.parametrize(
@@ -308,6 +321,9 @@ def test_any_damage_to_a_png_is_found():
     for at in range(len(data)):
         damaged = bytearray(data)
         damaged[at] ^= 0x10
+        if at >= len(data) - 12:  # the end, which has no pixels
+            assert close(read(bytes(damaged)), luma(COLOUR))
+            continue
         with pytest.raises(PeninkError):
             read(bytes(damaged))
     assert close(read(data + b"and more"), luma(COLOUR))
@@ -361,12 +377,9 @@ def test_a_bomb_of_compressed_rows_is_not_blown_up():
         b"",
         b"\x89",
         b"P",
-        b"P1 1 1 1",
-        b"P7\nWIDTH 1\nENDHDR\n",
         b"%!PS-Adobe-3.0 EPSF-3.0\n%%BoundingBox: 0 0 10 10\n",
         b"\xc5\xd0\xd3\xc6" + bytes(40),
         b"%PDF-1.7\n",
-        b"GIF89a" + bytes(40),
         b"BM" + bytes(60),
         b"RIFF\x10\x00\x00\x00WAVEfmt ",
         b"<svg xmlns='http://www.w3.org/2000/svg'/>",
@@ -379,7 +392,7 @@ def test_a_bomb_of_compressed_rows_is_not_blown_up():
 def test_no_other_format_is_a_photograph(data, monkeypatch):
     monkeypatch.setattr(os, "system", lambda *_: pytest.fail("a program was started"))
     monkeypatch.setattr("subprocess.Popen", lambda *_, **__: pytest.fail("a program was started"))
-    with pytest.raises(FormatError, match=r"p.img: not a (PGM, PPM, PNG, JPEG, TIFF or WebP )?photograph"):
+    with pytest.raises(FormatError, match=r"p.img: (not )?a "):
         read(data)
 
 

@@ -28,7 +28,7 @@ FILES = {
     "illustration": b"PK\x03\x04\x14\0\0\0\xff",
     "svg": b'<?xml version="1.0"?>\n<svg xmlns="http://www.w3.org/2000/svg"/>\n',
     "page": b"%!PS-Adobe-3.0 EPSF-3.0\n",
-    "foreign": b"\0\0\0\x18ftypheic\0\0\0\0\xff",
+    "foreign": b"\0\0\0\x18ftypcrx \0\0\0\0\xff",
 }
 READERS = {
     "pgm": lambda data: pgm.read(io.BytesIO(data), "f", 100),

@@ -1,0 +1,181 @@
+"""Photographs that Pillow decodes, and only what is handed to it: by itself it would start Ghostscript on an EPS."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import os
+import struct
+import warnings
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from penink_cli.ground.errors import FormatError, LimitError, PeninkError, printable
+from penink_cli.formats.pgm import check_size
+from penink_cli.formats.photo.choices import Verdict
+from penink_cli.formats.photo.decoded import BAND, SIXTEEN, Decoded, Values
+from penink_cli.formats.photo.exif import orientation
+from penink_cli.formats.photo.icc import profile_of
+from penink_cli.formats.photo.profile import Profile
+
+if TYPE_CHECKING:
+    from PIL import Image
+
+SHOWN = {"WEBP": "WebP"}
+
+
+@contextlib.contextmanager
+def errors(kind: str) -> Iterator[None]:
+    """Turn what Pillow raises, which may be nearly anything on damaged files, into errors of ours."""
+    from PIL import Image, UnidentifiedImageError
+
+    name = SHOWN.get(kind, kind)
+    Image.MAX_IMAGE_PIXELS = None  # our own limit stands in its place, and is an error
+    try:
+        with warnings.catch_warnings(), _silence() if kind == "TIFF" else contextlib.nullcontext():
+            warnings.simplefilter("ignore")  # of damaged metadata, which are of no use here
+            yield
+    except PeninkError:
+        raise
+    except MemoryError:
+        raise LimitError("does not fit into memory") from None
+    except UnidentifiedImageError:
+        raise FormatError(f"damaged {name} photograph, or one of a rare kind: its header makes no sense") from None
+    except Exception as error:
+        why = str(error) or type(error).__name__
+        raise FormatError(f"damaged {name} photograph: {printable(why, 60)}") from error
+
+
+@contextlib.contextmanager
+def _silence() -> Iterator[None]:
+    """Keep libtiff from writing to standard error; what it has found comes back as an exception as well."""
+    try:
+        kept, null = os.dup(2), os.open(os.devnull, os.O_WRONLY)
+    except OSError:  # standard error is closed: nothing can be written
+        yield
+        return
+    try:
+        os.dup2(null, 2)
+        yield
+    finally:
+        os.dup2(kept, 2)
+        os.close(kept)
+        os.close(null)
+
+
+def check_beginning(encoded: bytes, kind: str, max_pixels: int) -> None:
+    """Raise FormatError or LimitError where the rest of a long stream is not worth waiting for."""
+    order = "<" if encoded[:1] == b"I" else ">"
+    if kind == "TIFF" and struct.unpack_from(f"{order}4xI", encoded)[0] >= len(encoded) - 1024:
+        return  # its header comes last
+    with errors(kind), _opened(encoded, kind) as image:
+        check_size(*image.size, max_pixels)
+
+
+def read(encoded: bytes, kind: str, max_pixels: int, verdict: Verdict) -> Decoded:
+    """A photograph of a kind that needs no more than that: GIF, BMP, AVIF, HEIC."""
+    with errors(kind):
+        image = _opened(encoded, kind)
+        check_size(*image.size, max_pixels)
+        _load(image, kind, verdict)
+        picture = of_image(image)
+        if _has_more(image):
+            verdict.say("the first of several pictures is read")
+    return with_meaning(
+        picture,
+        profile_of(image.info.get("icc_profile"), picture.channels < 3, verdict),
+        orientation(image.info.get("exif")),
+    )
+
+
+def _has_more(image: Image.Image) -> bool:
+    """Whether a second picture follows, in a copy: the one decoded stays."""
+    return getattr(image, "is_animated", False)
+
+
+def _opened(encoded: bytes, kind: str) -> Image.Image:
+    """The photograph, not decoded yet."""
+    from PIL import Image, features
+
+    if kind == "HEIF":
+        try:
+            from pillow_heif import register_heif_opener
+        except ImportError:
+            raise FormatError("a HEIC photograph: its reader is an extra (pip install 'penink-cli[heic]')") from None
+        register_heif_opener(thumbnails=False)
+    elif kind == "AVIF" and not features.check("avif"):
+        raise FormatError("an AVIF photograph, which this Pillow cannot decode: save it as PNG or JPEG")
+    return Image.open(io.BytesIO(encoded), formats=(kind,))
+
+
+def decoded(
+    encoded: bytes, kind: str, max_pixels: int, verdict: Verdict, maxval: int = SIXTEEN, inverted: bool = False
+) -> Decoded:
+    """The first picture that Pillow finds in a file of one kind; maxval, inverted: of 16 bits, as TIFF says."""
+    with errors(kind):
+        image = _opened(encoded, kind)
+        check_size(*image.size, max_pixels)
+        _load(image, kind, verdict)
+        return of_image(image, maxval, inverted)
+
+
+def _load(image: Image.Image, kind: str, verdict: Verdict) -> None:
+    """Decode the pixels; of a damaged photograph what is left, where the user has asked for that."""
+    from PIL import ImageFile
+
+    try:
+        with errors(kind):
+            image.load()
+    except FormatError as error:
+        verdict.damage(error)
+        ImageFile.LOAD_TRUNCATED_IMAGES = True
+        try:
+            image.load()
+        finally:
+            ImageFile.LOAD_TRUNCATED_IMAGES = False
+
+
+def of_image(image: Image.Image, sixteen: int = SIXTEEN, inverted: bool = False) -> Decoded:
+    """A decoded image as bands of what it stores; inks and palettes become colours.
+
+    sixteen: white of one of 16 bits; inverted: that 0 is white there, which Pillow heeds in 8 bits only.
+    """
+    if image.mode in ("I", "F", "LAB", "HSV"):
+        raise FormatError(f"photograph of kind {image.mode}; grey or colour of 8 or 16 bits is needed")
+    width, height = image.size
+    maxval = 255
+    if image.mode.startswith("I;16"):
+        channels, mode, maxval = 1, image.mode, sixteen
+    elif image.mode in ("1", "L") and "transparency" not in image.info:
+        channels, mode = 1, "L"
+    elif image.mode == "LA":
+        channels, mode = 2, "LA"
+    elif image.has_transparency_data:
+        channels, mode = 4, "RGBA"
+    else:
+        channels, mode = 3, "RGB"
+
+    def bands() -> Iterator[Values]:
+        step = max(1, BAND // width)
+        if image.mode != mode and "transparency" in image.info:
+            whole = image.convert(mode)
+        else:
+            whole = image
+        for top in range(0, height, step):
+            part = whole.crop((0, top, width, min(height, top + step)))
+            values: Any = np.asarray(part if part.mode == mode else part.convert(mode))
+            if mode.startswith("I;16"):
+                values = values.astype(np.uint16 if maxval > 255 else np.uint8)
+                if inverted:
+                    values = maxval - values
+            yield values.reshape(-1, width, channels)
+
+    return Decoded(width, height, maxval, channels, bands())
+
+
+def with_meaning(picture: Decoded, profile: Profile | None, orientation: int) -> Decoded:
+    """The picture, with what its file says besides."""
+    return replace(picture, profile=profile, orientation=orientation)
