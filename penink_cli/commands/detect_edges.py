@@ -9,12 +9,14 @@ import click
 from penink_cli.ground.streams import writing
 from penink_cli.options.common import POSITIVE, Finite, filter_options, reporter, verbose_option
 from penink_cli.options.inputs import read_photo
+from penink_cli.options.photographs import photo_options
 
 STEP = Finite(most=1, above=0)
 
 
 @click.command(name="detect-edges")
 @filter_options
+@photo_options
 @click.option("--sigma", type=Finite(least=0.5, most=20), help="Smoothing, pixels.  [default: by the photo's noise]")
 @click.option(
     "--low", type=STEP, metavar="GREY", help="Least grey step of an edge, up to 1.  [default: half of --high]"

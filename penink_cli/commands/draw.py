@@ -26,6 +26,7 @@ from penink_cli.options.common import (
     warn,
 )
 from penink_cli.options.inputs import read_photo
+from penink_cli.options.photographs import photo_options
 from penink_cli.options.sheet import check_sheet
 from penink_cli.options.textures import find_texture, texture_option
 
@@ -42,6 +43,7 @@ ON_SCREEN = (".png", ".svg")  # these are looked at as they are, mostly; a print
 
 @click.command()
 @filter_options
+@photo_options
 @texture_option
 @click.option("--width", type=LENGTH, default="6in", show_default=True, help="Width on paper: 4in, 100mm.")
 @click.option("--pen", type=LENGTH, help="Draw everything with one pen of this width.  [default: the texture's]")

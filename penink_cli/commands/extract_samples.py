@@ -7,10 +7,12 @@ import click
 from penink_cli.ground.streams import writing
 from penink_cli.options.common import Finite, edges_option, filter_options, reporter, verbose_option
 from penink_cli.options.inputs import only_one_standard_input, read_edges, read_photo, warn_of_another_shape
+from penink_cli.options.photographs import photo_options
 
 
 @click.command(name="extract-samples")
 @filter_options
+@photo_options
 @edges_option(required=True)
 @click.option(
     "--margin",

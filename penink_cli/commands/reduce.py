@@ -21,10 +21,12 @@ from penink_cli.options.inputs import (
     read_photo,
     warn_of_another_shape,
 )
+from penink_cli.options.photographs import photo_limit, photo_options
 
 
 @click.command(name="reduce")
 @filter_options
+@photo_options
 @edges_option(required=False)
 @click.option("--factor", type=click.IntRange(1, 1000), metavar="N", help="Old samples a new one, along each axis.")
 @click.option("--size", type=SIZE, help="The new grid.")
@@ -88,7 +90,7 @@ def reduce(
         raise click.UsageError("--max-error goes with --auto")
     only_one_standard_input(file, edges_file, photo_file or "")
     edges = read_edges(edges_file, max_pixels)
-    samples = read_grey(file, max_pixels)
+    samples = read_grey(file, photo_limit(max_pixels))
     height, width = samples.values.shape
     edges = edges or EdgeList(width, height)
     photo = None

@@ -11,6 +11,7 @@ from penink_cli.ground.errors import in_quotes
 from penink_cli.ground.streams import writing
 from penink_cli.options.common import edges_option, filter_options, plain_number
 from penink_cli.options.inputs import only_one_standard_input, read_edges, read_photo, warn_of_another_shape
+from penink_cli.options.photographs import photo_options
 
 
 class Range(click.ParamType):
@@ -30,6 +31,7 @@ class Range(click.ParamType):
 
 @click.command()
 @filter_options
+@photo_options
 @click.option(
     "--mask",
     type=click.Path(allow_dash=True),

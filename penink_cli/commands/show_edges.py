@@ -7,10 +7,12 @@ import click
 from penink_cli.ground.streams import writing
 from penink_cli.options.common import POSITIVE, Finite, edges_option, filter_options
 from penink_cli.options.inputs import only_one_standard_input, read_edges, read_photo, warn_of_another_shape
+from penink_cli.options.photographs import photo_options
 
 
 @click.command(name="show-edges")
 @filter_options
+@photo_options
 @edges_option(required=True)
 @click.option("--margin", type=Finite(least=0, most=16), help="As of extract-samples.  [default: by the photo]")
 @click.option("--scale", type=POSITIVE, default=3.0, show_default=True, help="Size of a photo pixel on the screen.")

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import re
 
-from penink_cli.ground.errors import FormatError, PeninkError
 from penink_cli.formats.signatures import NAMES, kind_of
+from penink_cli.ground.errors import FormatError, PeninkError
 
 ENOUGH = 4096  # bytes to tell one kind from another
 

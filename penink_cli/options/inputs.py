@@ -10,6 +10,7 @@ import click
 from penink_cli.ground import streams
 from penink_cli.ground.errors import FormatError, LimitError, PeninkError
 from penink_cli.options.common import warn
+from penink_cli.options.photographs import photo_choices, photo_limit
 
 if TYPE_CHECKING:
     from penink_cli.ground.model import ColourImage, Directions, EdgeList, GreyImage, Illustration
@@ -26,19 +27,19 @@ def read_grey(path: str | None, max_pixels: int) -> GreyImage:
 
 
 def read_photo(path: str | None, max_pixels: int) -> GreyImage:
-    """The grey of a photograph, in any of the photo formats."""
+    """The grey of a photograph, in any of the photo formats, as `photo_options` say."""
     from penink_cli.formats import photo
 
     with streams.reading(path) as stream:
-        return photo.read_grey(stream, streams.source_name(path), max_pixels)
+        return photo.read_grey(stream, streams.source_name(path), photo_limit(max_pixels), photo_choices(), warn)
 
 
 def read_colours(path: str | None, max_pixels: int) -> GreyImage | ColourImage:
-    """A photograph in its colours, in any of the photo formats; grey where it has none."""
+    """A photograph in its colours, in any of the photo formats, as `photo_options` say; grey where it has none."""
     from penink_cli.formats import photo
 
     with streams.reading(path) as stream:
-        return photo.read_colours(stream, streams.source_name(path), max_pixels)
+        return photo.read_colours(stream, streams.source_name(path), photo_limit(max_pixels), photo_choices(), warn)
 
 
 def read_edges(path: str | None, max_pixels: int = 0) -> EdgeList | None:

@@ -12,9 +12,9 @@ import pytest
 import skimage.data
 from PIL import Image
 
-from penink_cli.ground.errors import FormatError, LimitError, PeninkError
 from penink_cli.formats import pgm, photo
 from penink_cli.formats.photo import png as png_reader
+from penink_cli.ground.errors import FormatError, LimitError, PeninkError
 from penink_cli.ground.model import ColourImage, GreyImage
 from tests.formats.readers import written
 

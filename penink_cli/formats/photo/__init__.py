@@ -20,11 +20,11 @@ import io
 from collections.abc import Callable
 from typing import BinaryIO
 
-from penink_cli.ground.errors import FormatError, LimitError, PeninkError, in_quotes
 from penink_cli.formats.photo import decoded, netpbm
 from penink_cli.formats.photo.choices import ALPHA, Choices, Verdict
 from penink_cli.formats.photo.decoded import Decoded, grey_of
 from penink_cli.formats.signatures import kind_of
+from penink_cli.ground.errors import FormatError, LimitError, PeninkError, in_quotes
 from penink_cli.ground.model import ColourImage, GreyImage
 
 __all__ = ["ALPHA", "Choices", "grey_of", "read_colours", "read_grey"]

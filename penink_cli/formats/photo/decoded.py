@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from penink_cli.ground.errors import FormatError
 from penink_cli.formats.photo.choices import ALPHA, Verdict
 from penink_cli.formats.photo.profile import Profile
+from penink_cli.ground.errors import FormatError
 from penink_cli.ground.model import ColourImage, GreyImage
 
 BAND = 1 << 20  # pixels converted at a time
@@ -129,9 +129,7 @@ def _shown(
     return band if planes else luma(band)
 
 
-def _over(
-    band: npt.NDArray[Any], alpha: Values, background: tuple[int, int, int], maxval: int
-) -> npt.NDArray[Any]:
+def _over(band: npt.NDArray[Any], alpha: Values, background: tuple[int, int, int], maxval: int) -> npt.NDArray[Any]:
     """The colours of a band on a background."""
     behind = [(level * maxval + 127) // 255 for level in background]
     if band.shape[2] == 1 and len(set(background)) == 1:

@@ -11,7 +11,6 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from penink_cli.ground.errors import FormatError, PeninkError
 from penink_cli.formats._compiled import jpeg_scans
 from penink_cli.formats.pgm import check_size
 from penink_cli.formats.photo.choices import Verdict
@@ -19,6 +18,7 @@ from penink_cli.formats.photo.decoded import Decoded
 from penink_cli.formats.photo.exif import orientation
 from penink_cli.formats.photo.icc import MOST, profile_of
 from penink_cli.formats.photo.pillow import decoded, with_meaning
+from penink_cli.ground.errors import FormatError, PeninkError
 
 ICC, EXIF = b"ICC_PROFILE\0", b"Exif\0\0"
 FRAMES = {0xC0: False, 0xC1: False, 0xC2: True}  # marker: progressive

@@ -7,9 +7,9 @@ from typing import Any, BinaryIO
 import numpy as np
 import numpy.typing as npt
 
-from penink_cli.ground.errors import FormatError, in_quotes
 from penink_cli.formats import pgm
 from penink_cli.formats.photo.decoded import Decoded
+from penink_cli.ground.errors import FormatError, in_quotes
 
 MAX_LINES, MAX_LINE = 1000, 4096  # of the header of a PAM
 # Tuple type: its depth, which is the number of its channels.

@@ -13,13 +13,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from penink_cli.ground.errors import FormatError, LimitError, PeninkError, printable
 from penink_cli.formats.pgm import check_size
 from penink_cli.formats.photo.choices import Verdict
 from penink_cli.formats.photo.decoded import BAND, SIXTEEN, Decoded, Values
 from penink_cli.formats.photo.exif import orientation
 from penink_cli.formats.photo.icc import profile_of
 from penink_cli.formats.photo.profile import Profile
+from penink_cli.ground.errors import FormatError, LimitError, PeninkError, printable
 
 if TYPE_CHECKING:
     from PIL import Image

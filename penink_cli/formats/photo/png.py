@@ -15,14 +15,14 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from penink_cli.ground.errors import FormatError, printable
-from penink_cli.formats._compiled.png_rows import unfilter
+from penink_cli.formats._compiled import png_rows
 from penink_cli.formats.pgm import check_size
 from penink_cli.formats.photo.choices import Verdict
 from penink_cli.formats.photo.decoded import Decoded
 from penink_cli.formats.photo.exif import orientation
 from penink_cli.formats.photo.icc import MOST, profile_of
 from penink_cli.formats.photo.profile import Profile, of_gamma
+from penink_cli.ground.errors import FormatError, printable
 
 BAND = 1 << 20  # bytes of rows inflated at a time
 PIXELS = (b"PLTE", b"tRNS", b"IDAT")  # chunks without which a picture is another one
@@ -254,7 +254,7 @@ def _raw_bands(columns: int, rows: int, header: _Header, source: _Rows) -> Itera
         got = source.read(wanted * (1 + stride))
         whole = len(got) // (1 + stride)
         packed = np.frombuffer(got, np.uint8, whole * (1 + stride)).reshape(whole, 1 + stride)
-        bad = unfilter(packed, above, max(1, header.bits_per_pixel // 8)) if whole else -1
+        bad = png_rows.unfilter(packed, above, max(1, header.bits_per_pixel // 8)) if whole else -1
         if bad >= 0:
             source.bad_filter()
             whole = bad

@@ -13,12 +13,12 @@ from typing import Any
 
 import numpy as np
 
-from penink_cli.ground.errors import FormatError
 from penink_cli.formats.photo import jpeg
 from penink_cli.formats.photo.choices import Verdict
 from penink_cli.formats.photo.decoded import Decoded
 from penink_cli.formats.photo.icc import MOST, profile_of
 from penink_cli.formats.photo.pillow import decoded, with_meaning
+from penink_cli.ground.errors import FormatError
 
 SIZES = {1: 1, 2: 1, 3: 2, 4: 4, 5: 8, 6: 1, 7: 1, 8: 2, 9: 4, 10: 8, 11: 4, 12: 8, 13: 4, 16: 8, 17: 8, 18: 8}
 WHOLE = {1: "B", 3: "H", 4: "I", 13: "I", 16: "Q", 18: "Q"}  # types that are whole numbers

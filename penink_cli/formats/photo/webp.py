@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import struct
 
-from penink_cli.ground.errors import FormatError
 from penink_cli.formats.photo.choices import Verdict
 from penink_cli.formats.photo.decoded import Decoded
 from penink_cli.formats.photo.exif import orientation
 from penink_cli.formats.photo.icc import MOST, profile_of
 from penink_cli.formats.photo.pillow import decoded, with_meaning
+from penink_cli.ground.errors import FormatError
 
 PIXELS = (b"VP8 ", b"VP8L", b"ALPH", b"VP8X", b"ANIM", b"ANMF")
 ANIMATED, ALPHA = 0x02, 0x10  # flags of VP8X
