@@ -22,7 +22,7 @@ from penink_cli.options.common import (
     verbose_option,
     warn,
 )
-from penink_cli.options.inputs import only_one_standard_input, read_colours, read_photo
+from penink_cli.options.inputs import only_one_standard_input, photo_options, read_colours, read_photo
 from penink_cli.options.sheet import check_sheet
 
 F = TypeVar("F", bound=Callable[..., Any])
@@ -139,6 +139,7 @@ def composition_options(function: F) -> F:
 @threads_option
 @verbose_option
 @filter_options
+@photo_options
 def compose(
     file: str | None,
     output: str | None,

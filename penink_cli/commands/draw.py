@@ -25,8 +25,7 @@ from penink_cli.options.common import (
     verbose_option,
     warn,
 )
-from penink_cli.options.inputs import read_photo
-from penink_cli.options.photographs import photo_options
+from penink_cli.options.inputs import photo_options, read_photo
 from penink_cli.options.sheet import check_sheet
 from penink_cli.options.textures import find_texture, texture_option
 

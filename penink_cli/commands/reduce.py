@@ -16,12 +16,13 @@ from penink_cli.options.common import (
 )
 from penink_cli.options.inputs import (
     only_one_standard_input,
+    photo_limit,
+    photo_options,
     read_edges,
     read_grey,
     read_photo,
     warn_of_another_shape,
 )
-from penink_cli.options.photographs import photo_limit, photo_options
 
 
 @click.command(name="reduce")

@@ -10,8 +10,13 @@ from penink_cli.commands.outline import Point
 from penink_cli.ground.errors import in_quotes
 from penink_cli.ground.streams import writing
 from penink_cli.options.common import edges_option, filter_options, plain_number
-from penink_cli.options.inputs import only_one_standard_input, read_edges, read_photo, warn_of_another_shape
-from penink_cli.options.photographs import photo_options
+from penink_cli.options.inputs import (
+    only_one_standard_input,
+    photo_options,
+    read_edges,
+    read_photo,
+    warn_of_another_shape,
+)
 
 
 class Range(click.ParamType):

@@ -1,21 +1,130 @@
-"""What subcommands read: open, read, check, and name the file in the error."""
+"""What subcommands read: open, read, check, and name the file in the error; and how photographs are to be read."""
 
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING
+import re
+import shlex
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
+from click.core import ParameterSource
 
 from penink_cli.ground import streams
-from penink_cli.ground.errors import FormatError, LimitError, PeninkError
-from penink_cli.options.common import warn
-from penink_cli.options.photographs import photo_choices, photo_limit
+from penink_cli.ground.errors import FormatError, LimitError, PeninkError, in_quotes
+from penink_cli.options.common import MAX_PIXELS, warn
 
 if TYPE_CHECKING:
+    from penink_cli.formats.photo.choices import Choices
     from penink_cli.ground.model import ColourImage, Directions, EdgeList, GreyImage, Illustration
 
+F = TypeVar("F", bound=Callable[..., Any])
+
+PHOTO_PIXELS = 250_000_000  # of a photograph and of samples as large: telephones take more than 100 megapixels
+ALPHA = "alpha"
+NAMED = {"white": (255, 255, 255), "black": (0, 0, 0), "grey": (128, 128, 128)}
+_OPTIONS = ("background", "profile", "strict", "lenient")
+_META = "penink.photo"
 MAX_MEMBER = 1 << 28  # bytes of a file that a manifest names
+
+
+class Background(click.ParamType):
+    """``white``, ``#rrggbb`` or ``alpha``."""
+
+    name = "COLOR|alpha"
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> tuple[int, int, int] | str:
+        """(red, green, blue), 0 … 255, or ALPHA."""
+        if isinstance(value, tuple) or value == ALPHA:
+            return value
+        if value in NAMED:
+            return NAMED[value]
+        if re.fullmatch(r"#[0-9a-fA-F]{3}", value):
+            value = "#" + "".join(2 * digit for digit in value[1:])
+        if not re.fullmatch(r"#[0-9a-fA-F]{6}", value):
+            self.fail(f"{in_quotes(value)} is no color such as white, black or #f0e0d0, nor alpha", param, ctx)
+        return int(value[1:3], 16), int(value[3:5], 16), int(value[5:7], 16)
+
+
+def _keep(ctx: click.Context, param: click.Parameter, value: Any) -> Any:
+    ctx.meta.setdefault(_META, {})[param.name] = value
+    return value
+
+
+def photo_options(function: F) -> F:
+    """--background, --profile, --strict and --lenient, which `inputs.read_photo` follows; they give no parameters."""
+    for decorate in (
+        click.option(
+            "--lenient",
+            is_flag=True,
+            expose_value=False,
+            callback=_keep,
+            help="Read what is left of a damaged photograph.",
+        ),
+        click.option(
+            "--strict",
+            is_flag=True,
+            expose_value=False,
+            callback=_keep,
+            help="Refuse a photograph whose file is not whole, even if all its pixels are.",
+        ),
+        click.option(
+            "--profile",
+            type=click.Choice(["apply", "ignore"]),
+            default="apply",
+            show_default=True,
+            expose_value=False,
+            callback=_keep,
+            help="The photograph's color profile or gamma: follow it, or take its values for sRGB's.",
+        ),
+        click.option(
+            "--background",
+            type=Background(),
+            default="white",
+            show_default=True,
+            expose_value=False,
+            callback=_keep,
+            help="What a transparent photograph lies on: white, black, #rrggbb; alpha draws its opacity instead.",
+        ),
+    ):
+        function = decorate(function)
+    return function
+
+
+def photo_choices() -> Choices:
+    """What the options of the command that runs say."""
+    from penink_cli.formats.photo.choices import Choices
+
+    context = click.get_current_context(silent=True)
+    given = context.meta.get(_META, {}) if context else {}
+    if given.get("strict") and given.get("lenient"):
+        raise click.UsageError("--strict and --lenient exclude each other")
+    damage = "strict" if given.get("strict") else "lenient" if given.get("lenient") else ""
+    return Choices(given.get("background", NAMED["white"]), given.get("profile") != "ignore", damage)
+
+
+def photo_words() -> str:
+    """The options as they were given, for the command lines of other filters; each with a blank before it."""
+    choices = photo_choices()
+    words = ""
+    if choices.background == ALPHA:
+        words += f" --background {ALPHA}"
+    elif choices.background != NAMED["white"]:
+        words += " --background " + shlex.quote("#" + "".join(f"{level:02x}" for level in choices.background))
+    if not choices.profile:
+        words += " --profile ignore"
+    return words + (f" --{choices.damage}" if choices.damage else "")
+
+
+def photo_limit(max_pixels: int) -> int:
+    """The pixels that a photograph, or samples of its size, may have: by --max-pixels, or by a limit of their own."""
+    context = click.get_current_context(silent=True)
+    if context is None or context.get_parameter_source("max_pixels") is not ParameterSource.DEFAULT:
+        return max_pixels
+    return max(PHOTO_PIXELS, MAX_PIXELS)
 
 
 def read_grey(path: str | None, max_pixels: int) -> GreyImage:
