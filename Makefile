@@ -1,7 +1,7 @@
 # penink: `make` draws all samples, `make test` passes the tests. Both do all their own set-up.
 #
 #   make            virtual environment, install, samples/out/*.ps and *.preview.png
-#   make test       the tests            make lint    ruff and mypy
+#   make test       the tests            make lint    ruff, mypy, cython-lint
 #   make figures    the paper's figures with our own pictures: samples/out/figures.pdf, .png and table1.md
 #   make bench      the measurements     make dist    wheel and source distribution
 #   make check-dist both, installed in an empty environment
@@ -17,7 +17,7 @@ VENV   ?= .venv
 
 BIN       := $(abspath $(VENV))/bin
 INSTALLED := $(VENV)/.installed
-KERNELS   := $(shell sed -n 's/^sources = \["\(.*\)"\]/\1/p' pyproject.toml)
+KERNELS   := $(shell find penink_cli -path '*/_compiled/*.pyx')
 BENCHES   := $(patsubst tests/benchmarks/%.py,tests.benchmarks.%,$(filter-out %/__init__.py %/_%,$(wildcard tests/benchmarks/*.py)))
 
 .PHONY: all install samples figures test lint bench fuzz torture manual dist check-dist clean needs needs-test needs-python
@@ -36,7 +36,7 @@ needs-python:
 	@PYTHON="$(PYTHON)" .ci/need python-venv python3-venv
 	@PYTHON="$(PYTHON)" .ci/need python-headers python3-dev
 
-$(INSTALLED): pyproject.toml penink_cli/__init__.py $(KERNELS) $(wildcard penink_cli/*/*.pxd penink_cli/*/*.h) | needs-python
+$(INSTALLED): pyproject.toml penink_cli/__init__.py $(KERNELS) $(shell find penink_cli -path '*/_compiled/*.pxd' -o -path '*/_compiled/*.h') .build/compiling.py | needs-python
 	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[test,lint]'
 	touch $@
@@ -55,6 +55,7 @@ test: $(INSTALLED) needs needs-test
 lint: $(INSTALLED)
 	$(BIN)/ruff check .
 	$(BIN)/mypy
+	$(BIN)/cython-lint penink_cli
 
 # Fuzz every reader for SECONDS in all; what is found stays in tests/data/found, and `make test` runs it.
 SECONDS ?= 600

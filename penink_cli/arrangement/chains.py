@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from penink_cli.arrangement import _points
+from penink_cli.arrangement._compiled import points as _points
 from penink_cli.arrangement.gradient import EdgePoints
 from penink_cli.ground.model import Floats
 

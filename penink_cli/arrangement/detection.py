@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from penink_cli.arrangement import _planar
-from penink_cli.arrangement._planar import Planar
+from penink_cli.arrangement._compiled import planar as _planar
+from penink_cli.arrangement._compiled.planar import Planar
 from penink_cli.arrangement.chains import Chains, chain_lengths, link_chains
 from penink_cli.arrangement.corners import sharpen
 from penink_cli.arrangement.gradient import EdgePoints, edge_points, noise_level

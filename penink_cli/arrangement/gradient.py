@@ -13,7 +13,7 @@ from functools import partial
 import numpy as np
 import numpy.typing as npt
 
-from penink_cli.arrangement import _points
+from penink_cli.arrangement._compiled import points as _points
 from penink_cli.ground import threads as threading
 from penink_cli.ground.model import Floats
 

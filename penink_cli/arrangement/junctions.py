@@ -20,12 +20,12 @@ from itertools import chain
 import numpy as np
 import numpy.typing as npt
 
-from penink_cli.arrangement import _exchange
-from penink_cli.arrangement._exchange import Exchange
-from penink_cli.arrangement._place import Place
-from penink_cli.arrangement._planar import Planar
-from penink_cli.arrangement._regions import FINENESS
-from penink_cli.arrangement._settling import Settler
+from penink_cli.arrangement._compiled import exchange as _exchange
+from penink_cli.arrangement._compiled.exchange import Exchange
+from penink_cli.arrangement._compiled.place import Place
+from penink_cli.arrangement._compiled.planar import Planar
+from penink_cli.arrangement._compiled.regions import FINENESS
+from penink_cli.arrangement._compiled.settling import Settler
 from penink_cli.arrangement.planar import UNIT
 from penink_cli.ground import threads as threading
 from penink_cli.ground.model import Floats

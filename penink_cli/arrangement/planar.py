@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from penink_cli.arrangement._planar import Planar
+from penink_cli.arrangement._compiled.planar import Planar
 from penink_cli.ground.model import Floats, Ints
 
 Ints32 = npt.NDArray[np.int32]

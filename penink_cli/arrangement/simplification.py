@@ -7,8 +7,9 @@ from itertools import pairwise
 import numpy as np
 import numpy.typing as npt
 
-from penink_cli.arrangement import _points, _shorten
-from penink_cli.arrangement._planar import Planar
+from penink_cli.arrangement._compiled import points as _points
+from penink_cli.arrangement._compiled import shorten as _shorten
+from penink_cli.arrangement._compiled.planar import Planar
 from penink_cli.arrangement.planar import UNIT, to_units
 
 _SWEEPS = 6

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from penink_cli.arrangement import _curves
+from penink_cli.arrangement._compiled import curves as _curves
 from penink_cli.arrangement.chains import Chains
 from penink_cli.arrangement.gradient import EdgePoints
 from penink_cli.ground.model import Floats

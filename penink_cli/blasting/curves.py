@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from penink_cli.blasting import _curves
+from penink_cli.blasting._compiled import curves as _curves
 from penink_cli.ground.model import Floats, Ints
 
 

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable
 import numpy as np
 import numpy.typing as npt
 
-from penink_cli.blasting import _due
+from penink_cli.blasting._compiled import due as _due
 from penink_cli.ground.model import Floats
 
 Cells = npt.NDArray[np.float32]

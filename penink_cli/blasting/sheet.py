@@ -24,7 +24,9 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import numpy.typing as npt
 
-from penink_cli.blasting import _ink, _place, _press
+from penink_cli.blasting._compiled import ink as _ink
+from penink_cli.blasting._compiled import place as _place
+from penink_cli.blasting._compiled import press as _press
 from penink_cli.blasting.curves import Polylines
 from penink_cli.blasting.low_pass import Cells, LowPass
 from penink_cli.ground.model import Floats, Ints

@@ -20,7 +20,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from penink_cli.blasting import _sweep, curves
+from penink_cli.blasting import curves
+from penink_cli.blasting._compiled import sweep as _sweep
 from penink_cli.blasting.sheet import Sheet
 from penink_cli.ground.angles import direction
 from penink_cli.ground.model import Floats, HatchLayer, Ints

@@ -15,7 +15,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from penink_cli.blasting import _threshold, curves
+from penink_cli.blasting import curves
+from penink_cli.blasting._compiled import threshold as _threshold
 from penink_cli.blasting.screens import WIDENED_PT, Screen, ThresholdTable, table
 from penink_cli.blasting.sheet import resample
 from penink_cli.ground.angles import direction

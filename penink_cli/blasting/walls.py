@@ -10,7 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from penink_cli.blasting import _walls, curves
+from penink_cli.blasting import curves
+from penink_cli.blasting._compiled import walls as _walls
 from penink_cli.blasting.sheet import STEP, Sheet
 from penink_cli.ground.model import EdgeList, Floats, Ints
 

@@ -23,7 +23,7 @@ import numpy as np
 import numpy.typing as npt
 
 from penink_cli.formats import edge_list
-from penink_cli.formats._compact import Coder
+from penink_cli.formats._compiled.compact import Coder
 from penink_cli.geometry.trails import trails
 from penink_cli.ground.errors import FormatError, LimitError
 from penink_cli.ground.model import EdgeList, GreyImage, Ints

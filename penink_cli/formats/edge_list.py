@@ -103,7 +103,7 @@ def _plain(text: bytes) -> EdgeList | None:
 
 def _numbers(text: bytes, at: int, group: int, whole: bool) -> tuple[Floats, int]:
     """Numbers (n,) of the array that begins before ``at``, and the place after it, -1 where it is not plain."""
-    from penink_cli.formats import _plain_json
+    from penink_cli.formats._compiled import plain_json as _plain_json
 
     end = text.find(b'"', at)  # of the next member, or none
     out = np.empty(1 + text.count(b",", at, end if end >= 0 else len(text)))

@@ -25,7 +25,9 @@ from typing import Any, BinaryIO, Protocol
 
 import numpy as np
 
-from penink_cli.formats import _plain_json, _stroke_lines, strict_json
+from penink_cli.formats import strict_json
+from penink_cli.formats._compiled import plain_json as _plain_json
+from penink_cli.formats._compiled import stroke_lines as _stroke_lines
 from penink_cli.ground.errors import FormatError, LimitError, ParameterError
 from penink_cli.ground.model import Strokes
 

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from penink_cli.geometry._sweep import orientation
+from penink_cli.geometry._compiled.sweep import orientation
 from penink_cli.ground.errors import ArrangementError
 from penink_cli.ground.model import EdgeList, Floats, Ints
 

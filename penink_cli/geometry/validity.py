@@ -8,11 +8,9 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from penink_cli.geometry import _sweep
+from penink_cli.geometry._compiled import sweep as _sweep
 from penink_cli.ground.errors import ArrangementError
 from penink_cli.ground.model import EdgeList, Floats, Ints
-
-COMPILED = _sweep.COMPILED
 
 
 def check(edges: EdgeList) -> None:

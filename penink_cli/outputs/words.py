@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from penink_cli.ground.model import Floats, Ints
-from penink_cli.outputs import _words
+from penink_cli.outputs._compiled import words as _words
 
 
 def text(numbers: Ints, after: npt.NDArray[np.int32], words: Sequence[bytes], decimals: int = 0) -> memoryview:

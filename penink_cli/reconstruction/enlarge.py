@@ -18,7 +18,12 @@ import numpy.typing as npt
 from penink_cli.ground import threads as threading
 from penink_cli.ground.errors import ParameterError
 from penink_cli.ground.model import EdgeList, Floats, GreyImage
-from penink_cli.reconstruction import _desk, _render, _search, _shade, _tile, _weights, lanes, paths
+from penink_cli.reconstruction import lanes
+from penink_cli.reconstruction._compiled import desk as _desk
+from penink_cli.reconstruction._compiled import render as _render
+from penink_cli.reconstruction._compiled import search as _search
+from penink_cli.reconstruction._compiled import tile as _tile
+from penink_cli.reconstruction._compiled import weights as _weights
 from penink_cli.reconstruction.kernels import is_bspline, taps
 from penink_cli.reconstruction.lattice import TILE, Axis, axis, centres
 from penink_cli.reconstruction.paths import Paths, reach, spill
@@ -210,7 +215,7 @@ class _Enlargement:
         first = y.taps.first[begin:end]
         source, last = int(first[0]), int(first[-1]) + 4
         expanded = np.empty((last - source, x.count + TILE), self.real)
-        separable = lanes.kernel("_separable")
+        separable = lanes.kernel("separable")
         separable.expand(self.samples, source, x.taps.first, self.x_taps[self.only_b], expanded)
         out = np.empty((end - begin, x.count), self.stored) if self.into is None else self.into[begin:end]
         separable.combine(expanded, source, first, self.y_taps[self.only_b][begin:end], self.maxval, out)
@@ -283,7 +288,3 @@ class _Reduction:
         if self.stored == np.float64:
             return out
         return np.floor(np.clip(out, 0.0, self.maxval) + 0.5).astype(self.stored)
-
-
-KERNELS = (_desk, _render, _search, _shade, _tile, _weights, *map(lanes.kernel, ("_fades", "_separable", "_sums")))
-COMPILED = paths.COMPILED and all(kernel.COMPILED for kernel in KERNELS)

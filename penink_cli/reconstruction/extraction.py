@@ -15,7 +15,8 @@ import numpy.typing as npt
 
 from penink_cli.ground import threads as threading
 from penink_cli.ground.model import EdgeList, Floats
-from penink_cli.reconstruction import _clean, _walls
+from penink_cli.reconstruction._compiled import clean as _clean
+from penink_cli.reconstruction._compiled import walls as _walls
 from penink_cli.reconstruction.camera import camera_blur
 
 _SPREAD = 1.5

@@ -22,7 +22,12 @@ import numpy.typing as npt
 
 from penink_cli.ground import threads as threading
 from penink_cli.ground.model import EdgeList, Floats
-from penink_cli.reconstruction import _banded, _desk, _fit, _rows, _tile, lanes
+from penink_cli.reconstruction import lanes
+from penink_cli.reconstruction._compiled import banded as _banded
+from penink_cli.reconstruction._compiled import desk as _desk
+from penink_cli.reconstruction._compiled import fit as _fit
+from penink_cli.reconstruction._compiled import rows as _rows
+from penink_cli.reconstruction._compiled import tile as _tile
 from penink_cli.reconstruction.lattice import Axis, axis
 from penink_cli.reconstruction.paths import Paths, spill
 

@@ -21,7 +21,7 @@ import numpy.typing as npt
 
 from penink_cli.ground.errors import ParameterError
 from penink_cli.ground.model import EdgeList
-from penink_cli.reconstruction import _walls
+from penink_cli.reconstruction._compiled import walls as _walls
 from penink_cli.reconstruction.camera import camera_blur
 from penink_cli.reconstruction.enlarge import reconstruct
 from penink_cli.reconstruction.extraction import segments

@@ -9,7 +9,7 @@ import numpy as np
 
 from penink_cli.ground.errors import ParameterError
 from penink_cli.ground.model import Floats
-from penink_cli.reconstruction import _kernels
+from penink_cli.reconstruction._compiled import kernels as _kernels
 
 KERNELS = ("cubic", "bspline")
 

@@ -8,12 +8,13 @@ from __future__ import annotations
 from importlib import import_module
 from types import ModuleType
 
-from penink_cli.reconstruction import _desk, _tile
+from penink_cli.reconstruction._compiled import desk as _desk
+from penink_cli.reconstruction._compiled import tile as _tile
 
 MAKES = {
-    "_separable": {16: "", 32: "_avx2"},  # runs of eight columns at a time do not fill a vector of sixteen
-    "_fades": {16: "", 32: "_avx2", 64: "_avx512"},
-    "_sums": {16: "", 32: "_avx2", 64: "_avx512"},
+    "separable": {16: "", 32: "_avx2"},  # runs of eight columns at a time do not fill a vector of sixteen
+    "fades": {16: "", 32: "_avx2", 64: "_avx512"},
+    "sums": {16: "", 32: "_avx2", 64: "_avx512"},
 }
 LANES = _desk.lanes()
 
@@ -21,11 +22,11 @@ LANES = _desk.lanes()
 def kernel(name: str) -> ModuleType:
     """The compiled kernel of that name, in the best make that can run here."""
     best = max(lanes for lanes in MAKES[name] if lanes <= LANES)
-    return import_module(f"penink_cli.reconstruction.{name}{MAKES[name][best]}")
+    return import_module(f"penink_cli.reconstruction._compiled.{name}{MAKES[name][best]}")
 
 
 def furnish(tile: _tile.Tile, desk: _desk.Desk) -> None:
     """Have the sets of pixels of a tile, and the arithmetic on a desk, computed in the best make."""
     tile.wide = LANES > 16
-    kernel("_fades").furnish(desk)
-    kernel("_sums").furnish(desk)
+    kernel("fades").furnish(desk)
+    kernel("sums").furnish(desk)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from penink_cli.ground.model import Floats
-from penink_cli.reconstruction import _kernels
+from penink_cli.reconstruction._compiled import kernels as _kernels
 from penink_cli.reconstruction.kernels import Taps, taps
 
 TILE = 8  # pixels a side at most: 64 of them are the bits of one word

@@ -9,9 +9,10 @@ import numpy.typing as npt
 
 from penink_cli.ground import threads as threading
 from penink_cli.ground.model import EdgeList, Floats
-from penink_cli.reconstruction import _cells, _nodes, _scene, _search, _views
-
-COMPILED = _cells.COMPILED and _nodes.COMPILED and _scene.COMPILED and _search.COMPILED and _views.COMPILED
+from penink_cli.reconstruction._compiled import cells as _cells
+from penink_cli.reconstruction._compiled import nodes as _nodes
+from penink_cli.reconstruction._compiled import scene as _scene
+from penink_cli.reconstruction._compiled import search as _search
 
 BLOCK = 2.0 * math.sqrt(2.0)  # how far a point can be from a sample under its 4 × 4 kernel
 

@@ -55,7 +55,7 @@ def soften(
     y_first = y.first - np.intc(inner[1])
     kept = np.empty((0, inner[2]))
     start = done = 0  # of the kept rows, and of those delivered
-    separable = lanes.kernel("_separable")
+    separable = lanes.kernel("separable")
     for rows in halves:
         kept = np.concatenate([kept, rows])
         if start + len(kept) == inner[3]:

@@ -11,7 +11,7 @@ import numpy as np
 
 from penink_cli.ground import threads as threading
 from penink_cli.ground.model import Floats, Ints
-from penink_cli.reconstruction import _weights
+from penink_cli.reconstruction._compiled import weights as _weights
 from penink_cli.reconstruction.kernels import is_bspline, taps
 from penink_cli.reconstruction.paths import Paths
 

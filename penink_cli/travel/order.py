@@ -12,7 +12,8 @@ from dataclasses import replace
 import numpy as np
 
 from penink_cli.ground.model import Floats, Ints, Strokes
-from penink_cli.travel import _improve, _tree
+from penink_cli.travel._compiled import improve as _improve
+from penink_cli.travel._compiled import tree as _tree
 
 NEIGHBOURS = 10
 STEPS = 4000  # per stroke: some ten times what usual drawings take, so a bound on hostile ones

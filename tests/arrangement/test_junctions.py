@@ -2,10 +2,11 @@
 
 import numpy as np
 import pytest
+from penink_cli.arrangement._compiled.place import Place
 from scipy.ndimage import gaussian_filter, label
 
-from penink_cli.arrangement import _exchange, _place, _regions, _settling, _shorten, _view, _window
-from penink_cli.arrangement._place import Place
+from penink_cli.arrangement._compiled import regions as _regions
+from penink_cli.arrangement._compiled import window as _window
 from penink_cli.arrangement.detection import detect_edges
 from penink_cli.arrangement.junctions import _taps
 from penink_cli.ground import threads
@@ -13,10 +14,6 @@ from tests.benchmarks._scenes import Scene, disc, polygon, random_scene
 from tests.benchmarks.edges import along
 
 FINE = _regions.FINENESS
-
-
-def test_the_compiled_kernels_are_under_test():
-    assert all(kernel.COMPILED for kernel in (_exchange, _place, _regions, _settling, _shorten, _view, _window))
 
 
 def seen_by(tip, blur, size=20, grey=(0.3, 0.7)):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.ndimage import gaussian_filter, gaussian_filter1d
 
-from penink_cli.arrangement import _curves
+from penink_cli.arrangement._compiled import curves as _curves
 from penink_cli.arrangement.chains import Chains
 from penink_cli.arrangement.detection import detect_edges
 from penink_cli.arrangement.smoothing import smooth
@@ -27,10 +27,6 @@ def places(edges: EdgeList, step=0.2):
         for n in [max(1, round(np.hypot(*(b - a)) / step))]
     ]
     return np.concatenate(found)
-
-
-def test_the_compiled_kernel_is_under_test():
-    assert _curves.COMPILED
 
 
 def test_a_smooth_run_is_the_least_of_its_sum():

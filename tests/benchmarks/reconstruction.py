@@ -26,8 +26,9 @@ from penink_cli.arrangement.detection import detect_edges
 from penink_cli.formats import edge_list
 from penink_cli.geometry.validity import check
 from penink_cli.ground.model import EdgeList, GreyImage
-from penink_cli.reconstruction import _render, lanes
 from penink_cli.reconstruction import enlarge as enlarging
+from penink_cli.reconstruction import lanes
+from penink_cli.reconstruction._compiled import render as _render
 from penink_cli.reconstruction.enlarge import enlarge, reconstruct
 from penink_cli.reconstruction.paths import Paths
 from tests.reconstruction.scenes import SCENES, psnr, tones
@@ -176,7 +177,7 @@ STAGES = ("preprocessing", "plain pass", "bends", "paths", "sums")
 def stages(image, edges, size) -> dict[str, float]:
     """Processor time of the stages of one call on one thread; that of the paths is within that of the sums."""
     spent = dict.fromkeys(STAGES, 0.0)
-    separable = lanes.kernel("_separable")
+    separable = lanes.kernel("separable")
     hand = enlarging._Enlargement._hand
     at_rest = False
 

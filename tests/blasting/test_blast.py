@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from penink_cli.blasting import _curves, _due, _ink, _place, _press, _sweep, _walls, candidates, sweep, walls
+from penink_cli.blasting import candidates, sweep, walls
 from penink_cli.blasting.blast import blast, too_dark
 from penink_cli.blasting.shares import shares
 from penink_cli.blasting.sheet import Sheet
@@ -23,10 +23,6 @@ def ramp() -> np.ndarray:
 
 def same(a: Strokes, b: Strokes) -> bool:
     return a.points.tobytes() == b.points.tobytes() and a.widths.tobytes() == b.widths.tobytes()
-
-
-def test_the_compiled_kernels_are_the_ones_under_test():
-    assert all(kernel.COMPILED for kernel in (_curves, _due, _ink, _place, _press, _sweep, _walls))
 
 
 @pytest.mark.parametrize(

@@ -130,8 +130,7 @@ def _serve(connection: socket.socket) -> None:
     import penink_cli.main
 
     for module in pkgutil.walk_packages(penink_cli.__path__, "penink_cli."):
-        # not the command itself, and not what compiles it, which needs Cython
-        if not module.name.endswith(("__main__", ".compiling")):
+        if not module.name.endswith("__main__"):
             importlib.import_module(module.name)
     import PIL.Image
 

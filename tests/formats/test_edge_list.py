@@ -12,7 +12,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from penink_cli.formats import _plain_json, edge_list, strict_json
+from penink_cli.formats import edge_list, strict_json
 from penink_cli.ground.errors import FormatError, LimitError
 from penink_cli.ground.model import EdgeList
 from tests.formats.readers import written
@@ -252,10 +252,6 @@ def test_what_is_read_in_bulk_is_what_json_reads(edges, data):
 def test_every_way_to_write_a_number_is_the_number_that_json_reads(number, reader):
     text = json.dumps(GOOD).replace("10.5", number).encode()
     assert reader(text).vertices[2, 0] == float(number)
-
-
-def test_the_compiled_build_is_the_one_under_test():
-    assert _plain_json.COMPILED
 
 
 def test_the_bytes_are_these():

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from penink_cli.formats import _plain_json, _stroke_lines, strokes
+from penink_cli.formats import strokes
 from penink_cli.ground.errors import FormatError, ParameterError
 from penink_cli.ground.model import HEADER as HEADER_MEMBERS
 from penink_cli.ground.model import Strokes
@@ -53,11 +53,6 @@ def written(s):
 
 def read(text):
     return strokes.read(io.BytesIO(text), "a.strokes.jsonl")
-
-
-def test_the_compiled_build_is_the_one_under_test():
-    assert _stroke_lines.COMPILED
-    assert _plain_json.COMPILED
 
 
 @settings(deadline=None)

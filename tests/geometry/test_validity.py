@@ -9,7 +9,6 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from penink_cli.geometry import validity
 from penink_cli.geometry.validity import check
 from penink_cli.ground.errors import ArrangementError
 from penink_cli.ground.model import EdgeList
@@ -18,10 +17,6 @@ from tests.oracles.brute import turn
 
 def edge_list(vertices, edges, width=10, height=10):
     return EdgeList(width, height, np.array(vertices, float).reshape(-1, 2), np.array(edges, np.int64).reshape(-1, 2))
-
-
-def test_compiled():
-    assert validity.COMPILED
 
 
 @pytest.mark.parametrize(

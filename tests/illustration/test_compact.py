@@ -7,7 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from penink_cli.formats import _compact, compact
+from penink_cli.formats import compact
+from penink_cli.formats._compiled import compact as _compact
 from penink_cli.geometry import quantisation, validity
 from penink_cli.ground.errors import FormatError, LimitError, PeninkError
 from penink_cli.ground.model import EdgeList, GreyImage
@@ -32,10 +33,6 @@ def random_arrangement(seed: int, columns: int, rows: int) -> EdgeList:
     ends = ends[ends[:, 0] != ends[:, 1]]
     tangle = EdgeList(40, 30, rng.random((n, 2)) * (40, 30), ends, rng.integers(0, 17, len(ends)) / 16)
     return quantisation.quantise(tangle, columns, rows)
-
-
-def test_the_compiled_coder_is_under_test():
-    assert _compact.COMPILED
 
 
 @settings(max_examples=60, deadline=None)

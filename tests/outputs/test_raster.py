@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from PIL import Image
 
 from penink_cli.outputs.page import Page, lay_out
-from penink_cli.outputs.raster import _cover, cover, png
+from penink_cli.outputs.raster import cover, png
 from tests.outputs.drawings import crosshatch, every_kind, strokes_of
 from tests.outputs.rendering import difference, ghostscript, pixels
 
@@ -38,10 +38,6 @@ def oracle(drawing, dpi, fine=16):
         for px, py in np.concatenate(pieces) if pieces else points:
             inked |= (x - px) ** 2 + (y - py) ** 2 <= pen * pen / 4
     return 255 * (1 - inked.reshape(h, fine, w, fine).mean(axis=(1, 3)))
-
-
-def test_the_compiled_build_is_the_one_under_test():
-    assert _cover.COMPILED
 
 
 coordinate = st.floats(-3, 15)

@@ -8,7 +8,6 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from penink_cli.travel import _improve, _tree
 from penink_cli.travel.order import drawn_length, joined, ordered, travel_length
 from tests.outputs.drawings import crosshatch, every_kind, strokes_of
 
@@ -38,11 +37,6 @@ def greedy_by_hand(strokes):
 def whole_way(strokes):
     """Travel from the corner on."""
     return travel_length(strokes) + (float(np.hypot(*strokes[0][0])) if len(strokes) else 0)
-
-
-def test_the_compiled_build_is_the_one_under_test():
-    assert _improve.COMPILED
-    assert _tree.COMPILED
 
 
 @settings(deadline=None)

@@ -5,12 +5,8 @@ import pytest
 from scipy.ndimage import gaussian_filter
 
 from penink_cli.ground.model import EdgeList
-from penink_cli.reconstruction import _clean, _walls
+from penink_cli.reconstruction._compiled import walls as _walls
 from penink_cli.reconstruction.extraction import extract_samples, segments
-
-
-def test_the_compiled_kernels_are_under_test():
-    assert _clean.COMPILED and _walls.COMPILED
 
 
 def edge_at(x, width=32, height=32):

@@ -5,16 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from penink_cli.reconstruction import paths as module
 from penink_cli.reconstruction.kernels import taps
 from penink_cli.reconstruction.paths import Paths, spill
 from penink_cli.reconstruction.weights import weights
 from tests.oracles import brute
 from tests.reconstruction.arrangements import HOSTILE, chain, random_edges
-
-
-def test_compiled():
-    assert module.COMPILED
 
 
 def test_the_way_around_a_wall():

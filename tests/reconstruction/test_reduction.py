@@ -4,15 +4,12 @@ import numpy as np
 import pytest
 
 from penink_cli.ground.model import EdgeList
-from penink_cli.reconstruction import _banded, _fit, _rows, reduction
+from penink_cli.reconstruction import reduction
+from penink_cli.reconstruction._compiled import fit as _fit
 from penink_cli.reconstruction.enlarge import reconstruct
 from penink_cli.reconstruction.fit import fit_samples
 from penink_cli.reconstruction.reduction import reduce
 from tests.reconstruction.arrangements import comb, random_edges, spiral, star
-
-
-def test_the_kernels_are_compiled():
-    assert all(kernel.COMPILED for kernel in (_banded, _fit, _rows))
 
 
 @pytest.mark.parametrize("x", [14.0, 14.5, 16.0, 17.3])

@@ -1,4 +1,4 @@
-# cython: language_level=3, boundscheck=False, wraparound=False, cdivision=True
+# cython: boundscheck=False, wraparound=False, cdivision=True
 """Compiled loops: level lines of a phase on a grid, a band of rows at a time. Only `level_lines` imports this module.
 
 A quad of nodes is two triangles, so that each node has three links of its own:

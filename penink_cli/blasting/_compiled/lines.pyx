@@ -1,4 +1,4 @@
-# cython: language_level=3, boundscheck=False, wraparound=False, cdivision=True
+# cython: boundscheck=False, wraparound=False, cdivision=True
 """Compiled loops that make pen strokes of polylines: evening and smoothing them, cutting, fitting cubics.
 
 Only `pen_lines` imports this module.

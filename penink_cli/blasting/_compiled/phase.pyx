@@ -1,4 +1,4 @@
-# cython: language_level=3, boundscheck=False, wraparound=False, cdivision=True
+# cython: boundscheck=False, wraparound=False, cdivision=True
 """Compiled loops of the phase field: what is predicted from node to node, and sweeps that bring all nodes to agree.
 
 A node holds a unit complex number ψ, the phase of the lines there. The normal of a line has two ends, so a neighbour

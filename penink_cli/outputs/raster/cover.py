@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from penink_cli.ground.model import Strokes
 from penink_cli.outputs.page import Page
-from penink_cli.outputs.raster import _cover
+from penink_cli.outputs.raster._compiled import cover as _cover
 
 ROOM = 1 << 21  # bytes of bits a band: about what a processor's own cache holds
 

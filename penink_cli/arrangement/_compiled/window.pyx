@@ -1,0 +1,332 @@
+# cython: boundscheck=False, wraparound=False, cdivision=True
+"""Compiled: what a few edges would look like through the camera, and where they must lie to look like the photo.
+
+See junctions.py.
+"""
+
+import numpy as np
+from libc.math cimport INFINITY, fabs, sqrt
+from penink_cli.arrangement._compiled.place cimport Place
+from penink_cli.arrangement._compiled.regions cimport EQUATIONS, MOST_MOVED, MOST_SIDE, MOST_UNKNOWN, Regions
+
+cdef double _RIDGE = 1e-4  # holds the grey of a region that no pixel tells of
+cdef double _OPTIMISM = 2.0  # times what a step is expected to give, all steps may give at most
+cdef double _LONGEST = 0.8  # pixels that a vertex goes in one step
+
+
+cdef class Window(Regions):
+    """A window of a photo, rendered from edges: regions of one grey each over a common slope, blurred.
+
+    photo: (h, w) grey; taps: as of `Regions`; spread: standard deviation of the camera's blur and a pixel's
+    width together, in pixels.
+    number: of each vertex of the place among those that are moved, -1 for the others; moved: how many those are.
+    held: (MOST_MOVED, 6) what is known of each otherwise, as A (xx, xy, yy), b (x, y) and c of a cost
+    xᵀ A x − 2 bᵀ x + c in grey², x counted from the window's corner.
+    rest: what the greys do not explain. normal, right: the equations for greys and moves. slope: what `right` was
+    of the moves. way: the moves. change: what a bend would add to the picture.
+    """
+
+    def __init__(self, float[:, ::1] photo, double[::1] taps, double spread):
+        Regions.__init__(self, taps)
+        self.photo, self.spread = photo, spread
+        self.rest = np.zeros((MOST_SIDE, MOST_SIDE), np.float64)
+        self.normal = np.zeros((MOST_UNKNOWN, MOST_UNKNOWN), np.float64)
+        self.right = np.zeros(MOST_UNKNOWN, np.float64)
+        self.grey = np.zeros(MOST_UNKNOWN, np.float64)
+        self.held = np.zeros((MOST_MOVED, 6), np.float64)
+        self.change = np.zeros((MOST_SIDE, MOST_SIDE), np.float64)
+        self.slope = np.zeros(2 * MOST_MOVED, np.float64)
+        self.way = np.zeros((MOST_MOVED, 2), np.float64)
+
+    def fitted(self, Place place, window: tuple, int halo, int rounds, held: tuple = ()) -> float:
+        """What `settle` leaves over when it sees the window (top, left, bottom, right), one row of `held` a vertex."""
+        top, left, bottom, right = window
+        self.open(top, left, bottom, right, halo)
+        self.held[:, :] = 0.0
+        for k, known in enumerate(held):
+            for i in range(6):
+                self.held[k, i] = known[i]
+        return self.settle(place, Place(), rounds, INFINITY) if self.enumerate(place, -1) else -1.0
+
+    cdef bint enumerate(self, Place place, int centre) noexcept nogil:
+        """Number the vertices that are moved: those that are free and have an edge. False for too many.
+
+        centre: if not negative, only this vertex and its neighbours.
+        """
+        cdef int v
+        self.moved = 0
+        for v in range(place.vertices):
+            self.number[v] = -1
+            if place.free[v] and place.degree[v] > 0 and (centre < 0 or v == centre or place.linked(v, centre)):
+                if self.moved == MOST_MOVED:
+                    return False
+                self.number[v] = self.moved
+                self.moved += 1
+        return True
+
+    cdef int open(self, int top, int left, int bottom, int right, int halo) noexcept nogil:
+        """See rows top … bottom, columns left … right: how many pixels are compared, halo within or at a side."""
+        cdef int height = self.photo.shape[0]
+        cdef int width = self.photo.shape[1]
+        self.top = max(0, top)
+        self.left = max(0, left)
+        self.rows = min(height, bottom) - self.top
+        self.columns = min(width, right) - self.left
+        self.first_row = 0 if top <= 0 else halo
+        self.last_row = self.rows - (0 if bottom >= height else halo)
+        self.first_column = 0 if left <= 0 else halo
+        self.last_column = self.columns - (0 if right >= width else halo)
+        return (self.last_row - self.first_row) * (self.last_column - self.first_column)
+
+    cdef void gather(self, int unknown) noexcept nogil:
+        """The normal equations of `rest` in the design's columns."""
+        cdef int i, j, a, b
+        cdef double v, rest
+        # Arrays of its own, which the compiler knows to be apart: a third faster.
+        cdef double[EQUATIONS] normal
+        cdef double[MOST_UNKNOWN] right, pixel
+        for a in range(unknown):
+            right[a] = 0.0
+            for b in range(a, unknown):
+                normal[a * MOST_UNKNOWN + b] = 0.0
+        for i in range(self.first_row, self.last_row):
+            for j in range(self.first_column, self.last_column):
+                rest = self.rest[i, j]
+                for a in range(unknown):
+                    pixel[a] = self.design[i, j, a]
+                for a in range(unknown):
+                    v = pixel[a]
+                    if v == 0.0:
+                        continue
+                    right[a] += v * rest
+                    for b in range(a, unknown):
+                        normal[a * MOST_UNKNOWN + b] += v * pixel[b]
+        for a in range(unknown):
+            self.right[a] = right[a]
+            for b in range(a, unknown):
+                self.normal[a, b] = normal[a * MOST_UNKNOWN + b]
+            self.normal[a, a] += _RIDGE
+
+    cdef void solve(self, int unknown) noexcept nogil:
+        """Solve them, into `right`."""
+        cdef int k, a, b
+        cdef double v
+        for a in range(unknown):  # L D Lᵀ
+            for b in range(a + 1, unknown):
+                v = self.normal[a, b] / self.normal[a, a]
+                for k in range(b, unknown):
+                    self.normal[b, k] -= v * self.normal[a, k]
+                self.right[b] -= v * self.right[a]
+        for a in range(unknown - 1, -1, -1):
+            v = self.right[a]
+            for b in range(a + 1, unknown):
+                v -= self.normal[a, b] * self.right[b]
+            self.right[a] = v / self.normal[a, a]
+
+    cdef double look(self, Place place) noexcept nogil:
+        """Render with the best greys; what is left of the photo stays in `rest`. Its square, negative for none."""
+        cdef int i, j, k, unknown
+        cdef double v
+        cdef double total = 0.0
+        if not self.part(place):
+            return -1.0
+        self.see()
+        unknown = self.regions + 2
+        for i in range(self.first_row, self.last_row):
+            for j in range(self.first_column, self.last_column):
+                self.rest[i, j] = self.photo[self.top + i, self.left + j] - 0.5
+        self.gather(unknown)
+        self.solve(unknown)
+        for k in range(unknown):
+            self.grey[k] = self.right[k]
+        for i in range(self.first_row, self.last_row):
+            for j in range(self.first_column, self.last_column):
+                v = self.rest[i, j]
+                for k in range(unknown):
+                    v -= self.design[i, j, k] * self.grey[k]
+                self.rest[i, j] = v
+                total += v * v
+        return total
+
+    cdef inline double grey_at(self, double x, double y) noexcept nogil:
+        """The grey of the region at a place in the window (pixels)."""
+        return self.grey[self.region_at(x, y)]
+
+    cdef void yields(self, Place place, int base) noexcept nogil:
+        """The design's columns from base on: how the picture changes as vertices move, x and y of each.
+
+        An edge that goes sideways by δ adds δ times the step across it, blurred, all along it; what a vertex's
+        moving gives a point of its edge fades linearly towards the other end.
+        """
+        cdef int e, i, j, k, n, a, b, first, last
+        cdef double x0, y0, dx, dy, x, y, t, length, step, weight, v
+        cdef double[26] over
+        cdef int reach = 1 + <int>(3.465 * self.spread)  # pixels: beyond, the bell is 0
+        for i in range(self.first_row, self.last_row):
+            for j in range(self.first_column, self.last_column):
+                for k in range(base, base + 2 * MOST_MOVED):
+                    self.design[i, j, k] = 0.0
+        for e in range(place.edges):
+            a = self.number[place.a[e]]
+            b = self.number[place.b[e]]
+            if a < 0 and b < 0:
+                continue
+            x0 = place.x[place.a[e]] - self.left
+            y0 = place.y[place.a[e]] - self.top
+            dx = place.x[place.b[e]] - self.left - x0
+            dy = place.y[place.b[e]] - self.top - y0
+            length = sqrt(dx * dx + dy * dy)
+            n = 1 + <int>(3 * length)
+            if length < 1e-6:
+                continue
+            for k in range(n):
+                t = (k + 0.5) / n
+                x = x0 + t * dx
+                y = y0 + t * dy
+                if x < -3 or y < -3 or x > self.columns + 3 or y > self.rows + 3:
+                    continue
+                # (−dy, dx) / length is to the right of the way on the screen; what it leaves behind is left of it.
+                step = self.grey_at(x + 0.4 * dy / length, y - 0.4 * dx / length)
+                step -= self.grey_at(x - 0.4 * dy / length, y + 0.4 * dx / length)
+                if step == 0.0:
+                    continue
+                weight = step * length / n / (6.283185307179586 * self.spread * self.spread)
+                first = max(self.first_column, <int>x - reach)
+                last = min(self.last_column, <int>x + reach + 1)
+                for j in range(first, last):
+                    over[j] = self.bell(fabs(j + 0.5 - x))
+                for i in range(max(self.first_row, <int>y - reach), min(self.last_row, <int>y + reach + 1)):
+                    v = weight * self.bell(fabs(i + 0.5 - y))
+                    for j in range(first, last):
+                        if a >= 0:
+                            self.design[i, j, base + 2 * a] += v * over[j] * (1 - t) * (-dy / length)
+                            self.design[i, j, base + 2 * a + 1] += v * over[j] * (1 - t) * (dx / length)
+                        if b >= 0:
+                            self.design[i, j, base + 2 * b] += v * over[j] * t * (-dy / length)
+                            self.design[i, j, base + 2 * b + 1] += v * over[j] * t * (dx / length)
+
+    cdef double promise(self, Place place, int e, double part) noexcept nogil:
+        """How much a bend at that part of an edge's way would explain, if what it changes were linear in its size.
+
+        `rest` must be what the place leaves over.
+        """
+        cdef int i, j, k
+        cdef double t, x, y, v, weight
+        cdef double x0 = place.x[place.a[e]] - self.left
+        cdef double y0 = place.y[place.a[e]] - self.top
+        cdef double dx = place.x[place.b[e]] - self.left - x0
+        cdef double dy = place.y[place.b[e]] - self.top - y0
+        cdef double length = sqrt(dx * dx + dy * dy)
+        cdef int n = 1 + <int>(2 * length)
+        cdef double product = 0.0, square = 0.0
+        cdef int reach = 1 + <int>(3.465 * self.spread)
+        for i in range(self.first_row, self.last_row):
+            for j in range(self.first_column, self.last_column):
+                self.change[i, j] = 0.0
+        for k in range(n):
+            t = (k + 0.5) / n
+            x = x0 + t * dx
+            y = y0 + t * dy
+            if x < -3 or y < -3 or x > self.columns + 3 or y > self.rows + 3:
+                continue
+            weight = self.grey_at(x + 0.4 * dy / length, y - 0.4 * dx / length)
+            weight -= self.grey_at(x - 0.4 * dy / length, y + 0.4 * dx / length)
+            weight *= t / part if t < part else (1 - t) / (1 - part)
+            for i in range(max(self.first_row, <int>y - reach), min(self.last_row, <int>y + reach + 1)):
+                v = weight * self.bell(fabs(i + 0.5 - y))
+                for j in range(max(self.first_column, <int>x - reach), min(self.last_column, <int>x + reach + 1)):
+                    self.change[i, j] += v * self.bell(fabs(j + 0.5 - x))
+        for i in range(self.first_row, self.last_row):
+            for j in range(self.first_column, self.last_column):
+                product += self.change[i, j] * self.rest[i, j]
+                square += self.change[i, j] * self.change[i, j]
+        return product * product / square if square > 0 else 0.0
+
+    cdef inline double bell(self, double d) noexcept nogil:
+        """Nearly a Gaussian: a cubic B-spline of the same spread, which needs no exponential."""
+        d *= 0.5773502691896258 / self.spread
+        if d >= 2:
+            return 0.0
+        if d >= 1:
+            return (2 - d) * (2 - d) * (2 - d) * 0.24077
+        return (4 - 6 * d * d + 3 * d * d * d) * 0.24077
+
+    cdef double held_cost(self, Place place) noexcept nogil:
+        """What it costs that vertices are where they are."""
+        cdef int v, k
+        cdef double x, y
+        cdef double total = 0.0
+        for v in range(place.vertices):
+            k = self.number[v]
+            if k >= 0:
+                x = place.x[v] - self.left
+                y = place.y[v] - self.top
+                total += self.held[k, 0] * x * x + 2 * self.held[k, 1] * x * y + self.held[k, 2] * y * y
+                total += self.held[k, 5] - 2 * (self.held[k, 3] * x + self.held[k, 4] * y)
+        return total
+
+    cdef double settle(self, Place place, Place trial, int rounds, double wanted) noexcept nogil:
+        """Move vertices to where the rendered window is most like the photo (Gauss and Newton's steps).
+
+        Those of `number` move; `trial` is room to work in. Returns the sum of squares that is left unexplained and
+        what `held` says; negative where there are too many regions. Gives up where that will not be as low as wanted.
+        """
+        cdef int v, k, axis, base, at
+        cdef double x, y, far, part
+        cdef double best = self.look(place)
+        cdef double found = best
+        if best < 0:
+            return best
+        best += self.held_cost(place)
+        trial.take(place)
+        for _ in range(rounds):
+            base = self.regions + 2
+            self.yields(trial, base)
+            self.gather(base + 2 * self.moved)
+            for v in range(place.vertices):
+                k = self.number[v]
+                if k >= 0:
+                    at = base + 2 * k
+                    x = place.x[v] - self.left
+                    y = place.y[v] - self.top
+                    self.normal[at, at] += self.held[k, 0]
+                    self.normal[at, at + 1] += self.held[k, 1]
+                    self.normal[at + 1, at + 1] += self.held[k, 2]
+                    self.right[at] += self.held[k, 3] - self.held[k, 0] * x - self.held[k, 1] * y
+                    self.right[at + 1] += self.held[k, 4] - self.held[k, 1] * x - self.held[k, 2] * y
+            for k in range(2 * self.moved):
+                self.slope[k] = self.right[base + k]
+            self.solve(base + 2 * self.moved)
+            far = 0.0  # by how much it would become less, if it were linear
+            for k in range(2 * self.moved):
+                far += self.slope[k] * self.right[base + k]
+            if best - _OPTIMISM * far > wanted:
+                break
+            for k in range(self.moved):
+                far = sqrt(self.right[base + 2 * k] ** 2 + self.right[base + 2 * k + 1] ** 2)
+                part = min(1.0, _LONGEST / max(far, 1e-9))
+                for axis in range(2):
+                    self.way[k, axis] = part * self.right[base + 2 * k + axis]
+            part = 1.0
+            while part > 0.4:
+                for v in range(place.vertices):
+                    k = self.number[v]
+                    if k >= 0:
+                        trial.x[v] = place.x[v] + part * self.way[k, 0]
+                        trial.y[v] = place.y[v] + part * self.way[k, 1]
+                found = self.look(trial)
+                if found >= 0:
+                    found += self.held_cost(trial)
+                    if found < best:
+                        break
+                part *= 0.5
+            if part <= 0.4:
+                break
+            for v in range(place.vertices):
+                place.x[v] = trial.x[v]
+                place.y[v] = trial.y[v]
+            far = best - found
+            best = found
+            if far < 5e-3 * best:
+                break
+        return best

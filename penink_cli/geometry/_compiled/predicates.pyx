@@ -1,0 +1,72 @@
+# cython: boundscheck=False, wraparound=False, cdivision=True
+"""The exact orientation predicate that every geometric decision of the project rests on.
+
+A double evaluation with Shewchuk's error bound settles nearly every call. The rest is
+summed exactly: six products, each split into its rounded value and its rounding error,
+added up as a non-overlapping expansion whose last non-zero term has the sign of the sum.
+"""
+
+from libc.math cimport fabs
+
+cdef double FILTER = 3.3306690738754716e-16  # (3 + 16 u) u with u = 2⁻⁵³
+cdef double SPLITTER = 134217729.0  # 2²⁷ + 1
+
+
+cdef int orient(double ax, double ay, double bx, double by, double cx, double cy) noexcept nogil:
+    """Exact sign of (b − a) × (c − a)."""
+    cdef double left = (bx - ax) * (cy - ay)
+    cdef double right = (by - ay) * (cx - ax)
+    cdef double area = left - right
+    cdef double bound = FILTER * (fabs(left) + fabs(right))
+    if area > bound:
+        return 1
+    if area < -bound:
+        return -1
+    return _exact(ax, ay, bx, by, cx, cy)
+
+
+cdef int _exact(double ax, double ay, double bx, double by, double cx, double cy) noexcept nogil:
+    """Sign of bx·cy − bx·ay − ax·cy − by·cx + by·ax + ay·cx, without rounding."""
+    cdef double[12] terms
+    cdef int n = 0
+    n = _add_product(terms, n, bx, cy)
+    n = _add_product(terms, n, -bx, ay)
+    n = _add_product(terms, n, -ax, cy)
+    n = _add_product(terms, n, -by, cx)
+    n = _add_product(terms, n, by, ax)
+    n = _add_product(terms, n, ay, cx)
+    while n > 0:
+        n -= 1
+        if terms[n] > 0.0:
+            return 1
+        if terms[n] < 0.0:
+            return -1
+    return 0
+
+
+cdef int _add_product(double* terms, int n, double a, double b) noexcept nogil:
+    """Add a·b exactly to an expansion of n terms in increasing magnitude; its new length, n + 2."""
+    cdef double product = a * b
+    cdef double c = SPLITTER * a
+    cdef double a_high = c - (c - a)
+    cdef double a_low = a - a_high
+    c = SPLITTER * b
+    cdef double b_high = c - (c - b)
+    cdef double b_low = b - b_high
+    cdef double error = a_low * b_low - (((product - a_high * b_high) - a_low * b_high) - a_high * b_low)
+    n = _grow(terms, n, error)
+    return _grow(terms, n, product)
+
+
+cdef int _grow(double* terms, int n, double b) noexcept nogil:
+    """Add one number to an expansion of n terms; its new length, n + 1."""
+    cdef int i
+    cdef double total, virtual, rest
+    for i in range(n):
+        total = b + terms[i]
+        virtual = total - b
+        rest = (b - (total - virtual)) + (terms[i] - virtual)
+        terms[i] = rest
+        b = total
+    terms[n] = b
+    return n + 1

@@ -1,0 +1,1 @@
+"""Compiled: this room's kernels. The build finds them here."""

@@ -1,0 +1,102 @@
+# cython: boundscheck=False, wraparound=False, cdivision=True
+"""The reconstruction near edges: equation 5 for the pixels of one tile after the other.
+
+In double, or for 8-bit output in float; what pixels see is exact in both.
+"""
+
+from libc.string cimport memcmp, memcpy
+from penink_cli.reconstruction._compiled.desk cimport Desk
+from penink_cli.reconstruction._compiled.shade cimport attenuate
+from penink_cli.reconstruction._compiled.tile cimport Tile
+
+
+ctypedef fused real:
+    float
+    double
+
+
+ctypedef fused stored:
+    unsigned char
+    unsigned short
+    double
+
+
+cdef void lay_out_rows(Desk desk, Tile tile, real* yc, real* yb) noexcept nogil:
+    """Lay ready what belongs to the rows of pixels of a tile; yc, yb: (8, 4) weights."""
+    cdef int k, r
+    cdef real[8] uy
+    cdef real[64] ky
+    for k in range(32):  # beyond the last row as in it
+        r = k if k < 4 * tile.ny else 4 * (tile.ny - 1) + (k & 3)
+        ky[k] = yc[r]
+        ky[32 + k] = yb[r]
+    if memcmp(desk.ky, ky, 64 * sizeof(ky[0])) != 0:
+        memcpy(desk.ky, ky, 64 * sizeof(ky[0]))
+        desk.known_weights[0] = desk.known_weights[1] = 0
+    for k in range(8):
+        uy[k] = (tile.py[k if k < tile.ny else 0] - tile.cy) / desk.radius
+    if memcmp(desk.uy, uy, 8 * sizeof(uy[0])) != 0:
+        memcpy(desk.uy, uy, 8 * sizeof(uy[0]))
+        desk.known = 0
+
+
+cdef void lay_out(Desk desk, Tile tile, real* samples, real* xc, real* xb, Py_ssize_t stride, real* ux) noexcept nogil:
+    """Lay ready the samples of a tile, and what belongs to its columns; what is beyond them belongs to the next."""
+    cdef Py_ssize_t i, j
+    cdef real* f
+    cdef real* columns
+    cdef real* kx
+    cdef real* values
+    if real is float:
+        kx = <float*>desk.kx
+        values = <float*>desk.values
+    else:
+        kx = <double*>desk.kx
+        values = <double*>desk.values
+    for i in range(8):
+        columns = xc + stride * i if i < 4 else xb + stride * (i - 4)
+        if memcmp(kx + 8 * i, columns, 8 * sizeof(xc[0])) != 0:
+            memcpy(kx + 8 * i, columns, 8 * sizeof(xc[0]))
+            desk.known_weights[0] = desk.known_weights[1] = 0
+    if memcmp(desk.ux, ux, 8 * sizeof(xc[0])) != 0:
+        memcpy(desk.ux, ux, 8 * sizeof(xc[0]))
+        desk.known = 0
+    for j in range(4):
+        f = samples + <Py_ssize_t>tile.row[j] * tile.scene.width
+        if tile.column[3] == tile.column[0] + 3:
+            memcpy(values + 4 * j, f + tile.column[0], 4 * sizeof(f[0]))
+            continue
+        for i in range(4):
+            values[4 * j + i] = f[tile.column[i]]
+
+
+def retouch(
+    Tile tile, Desk desk, real[:, ::1] samples, double[::1] x, real[::1] ux, real[:, ::1] xc, real[:, ::1] xb,
+    int[::1] x_cell, int[::1] x_begin, double[::1] y, real[:, ::1] yc, real[:, ::1] yb, int[::1] y_cell,
+    int[::1] y_begin, stored[:, ::1] out,
+) -> None:
+    """Reconstruct every tile that has an edge within the cells that its samples span.
+
+    x: (n + 8,) positions of the columns, sample units; ux: the same relative to the cell and in units of the radius.
+    xc, xb: (4, n + 8) taps. x_cell, x_begin: (t,), (t + 1,) the cell and the first column of each tile, left to right.
+    For y likewise, but (rows, 4) taps. out: (rows, n).
+    """
+    cdef Py_ssize_t a, b, c
+    with nogil:
+        for a in range(y_cell.shape[0]):
+            c = y_begin[a]
+            tile.place_in_row(y_cell[a], &y[c], y_begin[a + 1] - y_begin[a])
+            lay_out_rows(desk, tile, &yc[c, 0], &yb[c, 0])
+            for b in range(x_cell.shape[0]):
+                if tile.scene.empty_around(x_cell[b], y_cell[a]):
+                    continue
+                c = x_begin[b]
+                tile.place(x_cell[b], &x[c], x_begin[b + 1] - x_begin[b])
+                if not tile.see():
+                    continue
+                lay_out(
+                    desk, tile, &samples[0, 0], &xc[0, c], &xb[0, c],
+                    xc.shape[1], &ux[c],
+                )  # fmt: skip
+                attenuate(desk, tile)
+                desk.paint(desk, tile.shaded, tile.nx, tile.ny, &out[y_begin[a], c], out.shape[1])

@@ -1,0 +1,3 @@
+# cython: boundscheck=False, wraparound=False, cdivision=True
+# distutils: extra_compile_args = -mavx2
+include "separable.pyx"

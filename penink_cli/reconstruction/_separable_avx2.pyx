@@ -1,2 +1,0 @@
-# cython: language_level=3, boundscheck=False, wraparound=False, cdivision=True
-include "_separable.py"
