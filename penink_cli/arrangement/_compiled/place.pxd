@@ -5,6 +5,7 @@ cdef enum:
     MOST_EDGES = 32
     NEW = -1
 
+
 @cython.final
 cdef class Place:
     cdef int vertices, edges

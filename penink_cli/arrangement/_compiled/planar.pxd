@@ -7,7 +7,9 @@ cdef class Planar:
     cdef int[::1] _ignored
     cdef int _stamp, _free
     cdef long long _cell
-    cdef void _span(self, long long row, long long ax, long long ay, long long bx, long long by, int* span) noexcept nogil
+    cdef void _span(
+        self, long long row, long long ax, long long ay, long long bx, long long by, int* span
+    ) noexcept nogil
     cpdef bint add(self, int s)
     cpdef void remove(self, int s)
     cpdef void ignore_none(self)

@@ -11,6 +11,7 @@ cdef enum:
     MOST_UNKNOWN = 30  # regions, two slopes, two ways for each vertex
     EQUATIONS = 900  # that squared
 
+
 cdef class Regions:
     cdef double[::1] taps, sums
     cdef int top, left, rows, columns

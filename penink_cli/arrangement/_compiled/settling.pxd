@@ -3,6 +3,7 @@ cimport cython
 from penink_cli.arrangement._compiled.place cimport Place
 from penink_cli.arrangement._compiled.view cimport View
 
+
 @cython.final
 cdef class Settler(View):
     cdef double score, wanted, left_over

@@ -26,9 +26,9 @@ cdef class Settler(View):
     """
 
     def __init__(
-        self, float[:, ::1] photo, double[::1] taps, double spread, double near, int halo, double floor, double unit
+        self, float[:, ::1] photo, double[::1] taps, double spread, double near, int halo, double least, double unit
     ):
-        View.__init__(self, photo, taps, spread, near, halo, floor, unit)
+        View.__init__(self, photo, taps, spread, near, halo, least, unit)
         self.best, self.chosen, self.other = Place(), Place(), Place()
 
     def improve(self, Planar planar, double[::1] step, int[::1] site, int[::1] wider, int around) -> tuple | None:

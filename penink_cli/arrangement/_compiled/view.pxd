@@ -8,6 +8,7 @@ cdef enum:
     AROUND = 3  # pixels around the vertices of a place that are compared with the photo
     VERTEX = 3  # the logarithm of the pixels that a vertex's two coordinates are told by
 
+
 cdef class View(Window):
     cdef double near, floor, unit, trust
     cdef int halo, pixels

@@ -21,17 +21,17 @@ cdef double _TOLD = 40.0  # pixels: longer edges may be curved
 cdef class View(Window):
     """Sees a place of the arrangement through a window, and tells how well it explains the photo.
 
-    near: how far (pixels) blur may have moved things apart; halo: how far it reaches; floor: least variance of
+    near: how far (pixels) blur may have moved things apart; halo: how far it reaches; floor: the least variance of
     what a model leaves unexplained, grey²; unit: pixels; trust: 0 … 1, how much a description's length counts.
     given: the place as it is; pixels: how many are compared; segments: the arrangement's in the window; lines: what is
     known of each: its normal, its offset and the weight of what lies outside. crowded: whether there were too many.
     """
 
     def __init__(
-        self, float[:, ::1] photo, double[::1] taps, double spread, double near, int halo, double floor, double unit
+        self, float[:, ::1] photo, double[::1] taps, double spread, double near, int halo, double least, double unit
     ):
         Window.__init__(self, photo, taps, spread)
-        self.near, self.halo, self.floor, self.unit = near, halo, floor, unit
+        self.near, self.halo, self.floor, self.unit = near, halo, least, unit
         self.given, self.trial = Place(), Place()
         self.trust = 1.0
 

@@ -3,6 +3,7 @@ cimport cython
 from penink_cli.arrangement._compiled.place cimport MOST_VERTICES, Place
 from penink_cli.arrangement._compiled.regions cimport Regions
 
+
 cdef class Window(Regions):
     cdef float[:, ::1] photo
     cdef double spread

@@ -58,9 +58,10 @@ cdef Py_ssize_t _gains(
         else:
             dx = points[q + 1, 0] - points[q, 0]
             dy = points[q + 1, 1] - points[q, 1]
-            ink[i] = bar(bits, rows, columns, points[q, 0] + ox, points[q, 1] + oy,
-                          points[q + 1, 0] + ox, points[q + 1, 1] + oy, half_width(width, gain, dx, dy),
-                          False, False, False)
+            ink[i] = bar(
+                bits, rows, columns, points[q, 0] + ox, points[q, 1] + oy, points[q + 1, 0] + ox, points[q + 1, 1] + oy,
+                half_width(width, gain, dx, dy), False, False, False
+            )
             mx = points[q, 0] + 0.5 * dx + ox
             my = points[q, 1] + 0.5 * dy + oy
         ink[i] *= 0.015625

@@ -13,10 +13,9 @@ from libc.math cimport fabs, floor
 
 cdef inline double _chance(unsigned long long seed, unsigned long long a, unsigned long long b) noexcept nogil:
     """A number in [0, 1) that depends on the three integers alone (splitmix64)."""
-    cdef unsigned long long z = (seed * <unsigned long long>0x9E3779B97F4A7C15
-        + a * <unsigned long long>0xD1B54A32D192ED03
-        + b * <unsigned long long>0x8CB92BA72F3D8DD7
-        + 1)
+    cdef unsigned long long z = seed * <unsigned long long>0x9E3779B97F4A7C15 + 1
+    z += a * <unsigned long long>0xD1B54A32D192ED03
+    z += b * <unsigned long long>0x8CB92BA72F3D8DD7
     z = (z ^ (z >> 30)) * <unsigned long long>0xBF58476D1CE4E5B9
     z = (z ^ (z >> 27)) * <unsigned long long>0x94D049BB133111EB
     z = z ^ (z >> 31)

@@ -153,7 +153,7 @@ cdef class Coder:
     cdef int _bit(self, int node, int mixer, int bit):
         """One decision of a number, mixed from the estimates of every context."""
         cdef int k, index, p, error
-        cdef long long dot = 0
+        cdef long long step, dot = 0
         cdef int row = (mixer * NODES + node) % (4 * NODES)
         for k in range(INPUTS):
             index = (self._context[k] * NODES + node) & (TABLE - 1)
@@ -170,7 +170,8 @@ cdef class Coder:
             index = self._index[k]
             p = self._p[k, index]
             # A product of 16 and 16 bits, signed: it needs 33.
-            self._p[k, index] = p + <int>((<long long>((65535 if bit else 0) - p) * self._rate[self._n[k, index]]) >> 16)
+            step = (65535 if bit else 0) - p
+            self._p[k, index] = p + <int>((step * self._rate[self._n[k, index]]) >> 16)
             if self._n[k, index] < LIMIT:
                 self._n[k, index] += 1
         return bit

@@ -8,6 +8,7 @@ ctypedef void (*Fade)(
 ) noexcept nogil
 ctypedef void (*Paint)(Desk desk, int samples, int nx, int ny, void* out, Py_ssize_t stride) noexcept nogil
 
+
 @cython.final
 cdef class Desk:
     cdef readonly bint single, only_b

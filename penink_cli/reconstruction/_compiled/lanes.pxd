@@ -52,7 +52,7 @@ cdef inline void fill(Lanes* v, double x) noexcept nogil:  # in every place
     else:
         v[0] = all_doubles(x)
 
-cdef inline Lanes number(void* numbers, Py_ssize_t i, Lanes* like) noexcept nogil:  # number i of an array, in every place
+cdef inline Lanes number(void* numbers, Py_ssize_t i, Lanes* like) noexcept nogil:  # number i, in every place
     if Lanes is Floats:
         return all_floats((<float*>numbers)[i])
     else:

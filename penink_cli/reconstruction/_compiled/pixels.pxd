@@ -1,6 +1,7 @@
 cimport cython
 from libc.math cimport fabs, sqrt
 
+
 cdef class Pixels:
     cdef public bint wide
     cdef int nx, ny
@@ -12,8 +13,13 @@ cdef class Pixels:
     cdef float mid_x, mid_y, half_x, half_y  # the same within the cell
     cdef void stand_in_row(self, int cy, double* py, int ny) noexcept nogil
     cdef void stand_in_column(self, int cx, double* px, int nx) noexcept nogil
-    cdef unsigned long long half_plane(self, double ax, double ay, double bx, double by, bint from_sample) noexcept nogil
-    cdef unsigned long long exactly(self, double ax, double ay, double bx, double by, bint from_sample, unsigned long long m, unsigned long long unsure) noexcept nogil
+    cdef unsigned long long half_plane(
+        self, double ax, double ay, double bx, double by, bint from_sample
+    ) noexcept nogil
+    cdef unsigned long long exactly(
+        self, double ax, double ay, double bx, double by, bint from_sample, unsigned long long m,
+        unsigned long long unsure,
+    ) noexcept nogil
 
     # Called so often that a call from another module would cost more than they do: they are inlined there.
 

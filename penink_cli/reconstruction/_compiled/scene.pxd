@@ -14,6 +14,7 @@ cdef int within(double x, int n) noexcept nogil
 cdef int side_of_query(double ax, double ay, double bx, double by, double qx, double qy) noexcept nogil
 cdef int side_of_vertex(double px, double py, double qx, double qy, double ax, double ay) noexcept nogil
 
+
 @cython.final
 cdef class Scene:
     cdef list arrays
@@ -51,7 +52,9 @@ cdef class Scene:
     cdef bint sees_vertex(self, double qx, double qy, int v) noexcept nogil
     cdef bint joined(self, int u, int v) noexcept nogil
     cdef bint obstructed(self, double px, double py, double qx, double qy, int u, int v) noexcept nogil
-    cdef bint obstructed_in_crowd(self, double px, double py, double qx, double qy, int u, int v, int row, int c0, int c1) noexcept nogil
+    cdef bint obstructed_in_crowd(
+        self, double px, double py, double qx, double qy, int u, int v, int row, int c0, int c1
+    ) noexcept nogil
     cdef bint meets(self, int e, double px, double py, double qx, double qy, int u, int v) noexcept nogil
     cdef bint bends_for(self, int node, double qx, double qy) noexcept nogil
     cdef bint clear(self, double x0, double y0, double x1, double y1) noexcept nogil

@@ -3,6 +3,7 @@ cimport cython
 from penink_cli.reconstruction._compiled.scene cimport Scene
 from penink_cli.reconstruction._compiled.views cimport Views
 
+
 @cython.final
 cdef class Finder:
     cdef readonly Scene scene

@@ -6,6 +6,7 @@ from penink_cli.reconstruction._compiled.scene cimport Scene
 cdef int* zeros(Py_ssize_t n) noexcept nogil
 cdef int* grown(int* room, Py_ssize_t n) noexcept nogil
 
+
 cdef class Surroundings(Pixels):
     cdef Scene scene
     cdef float[4] sx

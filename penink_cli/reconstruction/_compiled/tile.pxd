@@ -3,6 +3,7 @@ cimport cython
 from penink_cli.reconstruction._compiled.search cimport Finder
 from penink_cli.reconstruction._compiled.surroundings cimport Surroundings
 
+
 @cython.final
 cdef class Tile(Surroundings):
     cdef Finder finder

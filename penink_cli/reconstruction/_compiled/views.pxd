@@ -4,6 +4,7 @@ from penink_cli.reconstruction._compiled.scene cimport Scene
 
 cdef bint worth(double x, double y, double length, double radius) noexcept nogil
 
+
 @cython.final
 cdef class Views:
     cdef Scene scene
