@@ -8,10 +8,10 @@ from dataclasses import replace
 import numpy as np
 
 from penink_cli.blasting import hatching, tile
-from penink_cli.blasting.sheet import Sheet, resample
+from penink_cli.blasting.sheet import Cells, Sheet, resample
 from penink_cli.blasting.threshold import blast_by_threshold
 from penink_cli.ground.errors import ParameterError
-from penink_cli.ground.model import EdgeList, Floats, Strokes, Texture
+from penink_cli.ground.model import Directions, EdgeList, Floats, Strokes, Texture
 
 #: The rules by which strokes are chosen.
 RULES = ("best", "strict", "threshold")
@@ -31,6 +31,7 @@ def blast(
     device_dpi: float | None = 600.0,
     rule: str = "best",
     outlines: Strokes | None = None,
+    directions: Directions | None = None,
     threads: int | None = None,
     tick: Callable[[], None] = lambda: None,
 ) -> Strokes:
@@ -44,6 +45,7 @@ def blast(
         "threshold", each stroke wherever the tone exceeds the one at which the texture has it enter: what an
         illustration that draws itself does on a device. It knows no seed.
     outlines: strokes drawn already, whose ink counts; they are not among those returned.
+    directions: a field along which hatching runs, in place of its layers' angles.
     tick: called now and then, `TICKS` times at the most.
 
     The width and density of strokes do not depend on the size of the sheet. Equal input gives equal strokes,
@@ -60,7 +62,8 @@ def blast(
     if outlines is not None:
         hatching.draw_first(sheet, outlines)
     if rule == "best" and texture.layers:
-        strokes = hatching.hatch_sheet(sheet, texture.layers, edges, gain, seed, pen_pt, tick)
+        along = None if directions is None else field_at(sheet, directions, edges)
+        strokes = hatching.hatch_sheet(sheet, texture.layers, edges, gain, seed, pen_pt, tick, along)
     else:
         enters = tile.thresholds(texture, gain)
         parts = tile.blast_tile(sheet, texture, edges, enters, seed, rule == "strict", pen_pt, tick)
@@ -71,6 +74,14 @@ def blast(
             strokes = hatching.press(sheet, strokes, seed, tile.crowd(sheet, texture))
     tick()
     return replace(strokes, texture=texture.name, seed=seed, device_dpi=device_dpi)
+
+
+def field_at(sheet: Sheet, directions: Directions, edges: EdgeList | None) -> tuple[Cells, Cells]:
+    """Cosine and sine of twice the angle of a field in each cell of the sheet, (rows, columns)."""
+    from penink_cli.directions.reading import at_size  # the reconstruction is not needed otherwise
+
+    field = at_size(directions, edges, sheet.rows, sheet.columns, sheet.threads)
+    return np.asarray(field.cos2, np.float32), np.asarray(field.sin2, np.float32)
 
 
 def left_over(

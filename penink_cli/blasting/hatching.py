@@ -17,6 +17,7 @@ from dataclasses import replace
 import numpy as np
 
 from penink_cli.blasting import candidates, curves, thin, walls
+from penink_cli.blasting.form import Form
 from penink_cli.blasting.shares import shares
 from penink_cli.blasting.sheet import Cells, Sheet
 from penink_cli.ground.model import EdgeList, HatchLayer, Strokes
@@ -32,6 +33,8 @@ SINGLE = 0.06
 SWEEPS, ROUNDS = 2, 3
 #: How much of the error the next sweep's density takes up.
 SWEEP_GAIN = 0.4
+#: Along a field no more of an error than this is fed back at a time: lines that must end there cannot make it up.
+MOST_FED_BACK = np.float32(0.15)
 #: Fine strokes: their width in parts of the pen's, and in dots of the device at the least; their length in points.
 FINE, FINE_DOTS, FINE_PT = 0.5, 1.5, 44.0
 #: They must pass a place where so many times as much is due as they add themselves, and count their own ink so many
@@ -41,6 +44,9 @@ FINE_LEAST, FINE_CAUTION = 0.4, 1.6
 FINE_SEEN = 0.015
 #: What a fine stroke must gain, and its least length.
 FINE_COST, FINE_SHORTEST_PT = 0.02, 20.5
+#: Along a field short strokes fill what is too light by this, and must gain so much; they count their own ink so many
+#: times and are no shorter than this.
+FILLER_SEEN, FILLER_COST, FILLER_CAUTION, FILLER_SHORTEST_PT = 0.06, 0.05, 1.3, 4.0
 #: Along the frame strokes are drawn where it is darker, and count their own ink so many times.
 RIM_TONE, RIM_CAUTION = 0.85, 4.0
 #: Rows of fine strokes that are tried, and the moves sideways, in rows, that look for the middle of a gap.
@@ -57,14 +63,18 @@ def hatch_sheet(
     seed: int,
     pen_pt: float | None,
     tick: Callable[[], None],
+    directions: tuple[Cells, Cells] | None = None,
 ) -> Strokes:
     """Strokes of all layers that give the sheet its tone, together with the ink that is there already.
 
     pen_pt: the one pen there is, which then also draws what else would be fine strokes, and is pressed evenly.
+    directions: cosine and sine of twice the angle (rows, columns) along which strokes run, each layer turned from it;
+        None for the layers' own angles.
     """
     borders = walls.build(edges, sheet, max(pen_pt or layer.pen_pt for layer in layers))
     pens = [pen_pt or layer.pen_pt for layer in layers]
     finest = pens if pen_pt else [min(pen, max(FINE * pen, FINE_DOTS * gain_pt)) for pen in pens]
+    form = None if directions is None else Form(sheet, *directions, layers, borders)
     along = thin.strokes_along(sheet, min(pens), min(pens) + gain_pt * 1.27, pen_pt is not None)
     draw_first(sheet, along)
     wide = sheet.low_pass(sheet.tone)
@@ -82,7 +92,9 @@ def hatch_sheet(
             smooth = np.clip(smooth, 0.0, 0.995).astype(np.float64)
             around = sheet.spread(sheet.seen(density)).astype(np.float64)
             laid = [
-                candidates.swept(sheet, cover, layer, pen, fine, gain_pt, borders, seed * 64 + i)
+                form.swept(i, cover, pen, fine, seed * 64 + i)
+                if form
+                else candidates.swept(sheet, cover, layer, pen, fine, gain_pt, borders, seed * 64 + i)
                 for i, (layer, pen, fine, cover) in enumerate(
                     zip(layers, pens, finest, shares(smooth, around, layers))
                 )
@@ -104,6 +116,8 @@ def hatch_sheet(
         if best is None or size < best[0]:
             best = size, turn, strokes
         error = sheet.spread(error) * crowd
+        if form:
+            error = np.clip(error, -MOST_FED_BACK, MOST_FED_BACK)
         wanted = wanted + error
         density = density + np.float32(SWEEP_GAIN) * error
     assert best is not None
@@ -112,7 +126,9 @@ def hatch_sheet(
     if best[1] != ROUNDS - 1:
         sheet.clear()
         paint(sheet, drawn)
-    fine = fine_strokes(sheet, layers, finest, gain_pt, borders, seed)
+    if form:
+        drawn = Strokes.joined([drawn, *fillers(sheet, form, pens, seed)])
+    fine = fine_strokes(sheet, layers, finest, gain_pt, borders, seed, form)
     drawn = Strokes.joined([drawn, *fine])
     if pen_pt is None and len(drawn):
         drawn = press(sheet, drawn, seed, crowd)
@@ -139,6 +155,7 @@ def fine_strokes(
     gain_pt: float,
     borders: walls.Walls,
     seed: int,
+    form: Form | None = None,
 ) -> list[Strokes]:
     """Strokes between those on the sheet, where these leave it too light, in the directions of the layers there.
 
@@ -156,12 +173,36 @@ def fine_strokes(
     for i, (layer, pen) in enumerate(zip(layers, pens)):
         if layer.spacing_pt > 0:
             continue  # what fills a gap would lie closer than it may
-        part = candidates.lattice(
-            sheet, layer, pen, gain_pt, FINE_PT, FINE_ROW_PT, FINE_LEAST, seen, borders, seed * 64 + i
-        )
+        if form:
+            part = form.between(i, pen, FINE_PT, FINE_LEAST, seen, seed * 64 + i)
+        else:
+            part = candidates.lattice(
+                sheet, layer, pen, gain_pt, FINE_PT, FINE_ROW_PT, FINE_LEAST, seen, borders, seed * 64 + i
+            )
         runs, moved = sheet.place(
             part.lines, part.widths, part.batches, walls=part.bounded, cost=FINE_COST, caution=FINE_CAUTION,
             shifts=FINE_MOVES, spacing_pt=np.full(len(part.widths), FINE_ROW_PT), shortest_pt=FINE_SHORTEST_PT,
+        )  # fmt: skip
+        out.append(part.drawn(runs, moved))
+    return out
+
+
+def fillers(sheet: Sheet, form: Form, pens: list[float], seed: int) -> list[Strokes]:
+    """Short strokes of the full pen along the field, where what is drawn leaves it much too light.
+
+    Lines that follow a field end where they come too close, and at edges of the tone; what they leave is too small for
+    a stroke of full length and too dark for a fine one.
+    """
+    out = []
+    for i, (layer, pen) in enumerate(zip(form.layers, pens)):
+        if layer.spacing_pt > 0:
+            continue
+        sheet.owe(sheet.tone)
+        seen = sheet.spread(sheet.error()) - np.float32(FILLER_SEEN)
+        part = form.fillers(i, pen, seen, seed * 64 + i)
+        runs, moved = sheet.place(
+            part.lines, part.widths, part.batches, walls=part.bounded, cost=FILLER_COST, caution=FILLER_CAUTION,
+            shortest_pt=FILLER_SHORTEST_PT,
         )  # fmt: skip
         out.append(part.drawn(runs, moved))
     return out

@@ -75,12 +75,12 @@ class Sheet:
         self.bits = np.zeros((self.rows, (self.columns + 7) // 8, 8), np.uint64)
         self._kept: npt.NDArray[np.uint64] | None = None
         self.residual: Cells = np.zeros((self.rows, self.columns), np.float32)
-        self.low_pass = LowPass(SIGMA_PT / CELL_PT, self.tone, STEP, self._each)
+        self.low_pass = LowPass(SIGMA_PT / CELL_PT, self.tone, STEP, self.each)
         #: how much of the kernel about each cell counts
         self.weight = self.low_pass(np.ones_like(self.tone))
         # what the eye sees is kept for cells of twice the size
         self._coarse_tone = halve(self.tone)
-        self._eye = LowPass(EYE_PT / CELL_PT / 2, self._coarse_tone, STEP, self._each)
+        self._eye = LowPass(EYE_PT / CELL_PT / 2, self._coarse_tone, STEP, self.each)
         self._seen_weight = self._eye(np.ones_like(self._coarse_tone))
 
     def clear(self) -> None:
@@ -132,7 +132,7 @@ class Sheet:
 
         Both low-passed alike: held against the bare tone, the drawing would be the lighter the noisier a photograph is.
         """
-        self.low_pass = LowPass(STRICT_SIGMA_PT / CELL_PT, self.tone, 2.0, self._each)
+        self.low_pass = LowPass(STRICT_SIGMA_PT / CELL_PT, self.tone, 2.0, self.each)
         self.weight = self.low_pass(np.ones_like(self.tone))
         self.residual = self.low_pass(self.tone - self.ink)
 
@@ -200,7 +200,7 @@ class Sheet:
         block = self._blocks(lines)
         for batch in batches:
             for group in coloured(batch, block[batch]):
-                self._each(run, group)
+                self.each(run, group)
         who, which = np.nonzero(runs[:, :, 0] >= 0)
         found = np.column_stack([who, runs[who, which]])
         found[:, 1:] -= lines.first[who][:, None]
@@ -232,7 +232,7 @@ class Sheet:
                 )  # fmt: skip
 
             for group in groups:
-                self._each(run, group)
+                self.each(run, group)
         return pressed / self.pitch
 
     def _blocks(self, lines: Polylines) -> Ints:
@@ -245,7 +245,8 @@ class Sheet:
             size = max(size, reach)
         return np.floor((lo + hi) / (2 * size)).astype(np.int64)
 
-    def _each(self, work, items) -> None:  # type: ignore[no-untyped-def]
+    def each(self, work, items) -> None:  # type: ignore[no-untyped-def]
+        """Run work over each of the items, on threads if there are to be any."""
         items = list(items)
         if self.threads == 1 or len(items) < 2:
             for item in items:

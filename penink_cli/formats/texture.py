@@ -34,6 +34,7 @@ _LAYER = {
     "spacing": ("spacing_pt", 0.0, LIMIT),
     "wave": ("wave_pt", 0.0, 144.0),
     "wave_length": ("wave_length_pt", 0.0, LIMIT),
+    "turn": ("turn", -360.0, 360.0),
 }
 _NEEDED = ("angle", "from", "to", "pen")
 
@@ -137,9 +138,13 @@ def write(out: Sink, texture: Texture) -> None:
     if texture.whole:
         head += ', "whole": true'
     if texture.layers:
-        names = [(name, field) for name, (field, _, _) in _LAYER.items()]
+
+        def members(layer: HatchLayer) -> list[tuple[str, float]]:
+            values = [(name, getattr(layer, field)) for name, (field, _, _) in _LAYER.items()]
+            return [(name, value) for name, value in values if value is not None]
+
         layers = ",\n  ".join(
-            "{" + ", ".join(f'"{name}": {_fixed(getattr(layer, field), 4)}' for name, field in names) + "}"
+            "{" + ", ".join(f'"{name}": {_fixed(value, 4)}' for name, value in members(layer)) + "}"
             for layer in texture.layers
         )
         head += f', "layers": [\n  {layers}]'

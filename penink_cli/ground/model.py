@@ -303,6 +303,8 @@ class HatchLayer:
     pen_pt: width of the strokes, points.
     spacing_pt: the strokes' centre lines are nowhere closer than this, points; 0 for no limit.
     wave_pt, wave_length_pt: how far the strokes wander sideways, as the grain of wood does, and over what length.
+    turn: where there is a field of directions, degrees of the strokes from it; None for what angle differs by from that
+        of the first layer.
     """
 
     angle: float
@@ -312,6 +314,7 @@ class HatchLayer:
     spacing_pt: float = 0.0
     wave_pt: float = 0.0
     wave_length_pt: float = 0.0
+    turn: float | None = None
 
 
 @dataclass(frozen=True, eq=False)

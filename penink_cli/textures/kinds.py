@@ -5,6 +5,7 @@ KINDS = {
     "brick": "a wall, its joints first, then the bricks one by one",
     "crosshatch": "lines in one direction, and others across them where it is dark",
     "crosshatch4": "lines in up to four directions",
+    "form": "lines along the form (see blast --directions), others at a slant over them, black where it is darkest",
     "grain": "wandering lines side by side, like the grain of wood",
     "grass": "blades that grow upwards and bend",
     "parallel": "lines in one direction, denser as it gets darker",

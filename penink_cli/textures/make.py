@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
@@ -22,6 +23,9 @@ FULL = 0.978
 LAYER_ENDS = {1: (0.99,), 2: (0.5, 0.99), 3: (0.42, 0.7, 0.99), 4: (0.42, 0.66, 0.83, 0.99)}
 #: Angles of the layers, from that of the first.
 LAYER_TURNS = (0.0, 90.0, 45.0, 135.0)
+#: Lines along the form tell it best while they are alone; those over them lie neither square to them, which looks
+#: woven, nor near them, which shimmers. Above the last tone it is black.
+FORM_ENDS, FORM_TURN, FORM_BLACK = (0.65, 0.92), 50.0, 0.92
 #: A stroke paints a little more than its pen is wide: the device's gain at 600 dpi, roughly.
 GAIN_PT = 0.15
 
@@ -110,18 +114,20 @@ def hatching(
     seed: int,
     wave: float = 0.0,
     wave_length: float = 0.0,
+    turns: tuple[float, ...] = LAYER_TURNS,
+    ends: tuple[float, ...] = (),
 ) -> Texture:
     """Straight or wavy strokes in one to four directions, one layer after the other."""
     rng = np.random.default_rng(seed)
-    ends = LAYER_ENDS[count]
+    ends = ends or LAYER_ENDS[count]
     layers = []
     strokes: list[Floats] = []
     reached = 0.0
     for i, until in enumerate(ends):
-        turned = angle + LAYER_TURNS[i]
+        turned = angle + turns[i]
         if spacing > 0:
             until = min(until, 1 - (1 - reached) * (1 - min(0.97, (pen + GAIN_PT) / spacing)))
-        low = max(0.0, reached - 0.04)
+        low = max(0.0, reached - (0.05 if ends == FORM_ENDS else 0.04))
         if until <= low:
             break
         layers.append(HatchLayer(turned, low, until, pen, spacing, wave, wave_length))
@@ -168,6 +174,14 @@ def crosshatch(angle: float, pen: float, spacing: float, layers: int, seed: int)
 def grain(angle: float, pen: float, spacing: float, layers: int, seed: int) -> Texture:
     """Wandering lines side by side, like the grain of wood."""
     return hatching("grain", angle, layers, pen, spacing, seed, wave=5.0, wave_length=72.0)
+
+
+def form(angle: float, pen: float, spacing: float, layers: int, seed: int) -> Texture:
+    """Lines along the form, others at a slant over them where it is dark, and black where it is darkest."""
+    slanted = hatching("form", angle, 2, pen, spacing, seed, turns=(0.0, FORM_TURN), ends=FORM_ENDS)
+    first, second = slanted.layers
+    black = replace(first, low=FORM_BLACK, high=1.0, turn=0.0)
+    return replace(slanted, layers=(replace(first, turn=0.0), replace(second, turn=FORM_TURN), black))
 
 
 def stipple(angle: float, pen: float, spacing: float, layers: int, seed: int) -> Texture:
@@ -278,6 +292,7 @@ MAKERS: dict[str, tuple[Callable[[float, float, float, int, int], Texture], floa
     "parallel": (parallel, -45.0, 0.4, 1),
     "crosshatch": (crosshatch, -45.0, 0.4, 2),
     "crosshatch4": (crosshatch, -45.0, 0.4, 4),
+    "form": (form, -45.0, 0.4, 2),
     "stipple": (stipple, 0.0, 1.0, 1),
     "scribble": (scribble, 0.0, 0.4, 1),
     "grain": (grain, -8.0, 0.4, 1),

@@ -1,0 +1,283 @@
+"""Hatching along the form: the strokes of a layer follow a field of directions instead of one angle.
+
+Lines are level lines of a phase (see `phase`), over the frame and a little beyond it, cut to strokes of a hand's length
+(`pen_lines`). They stand in for those of the straight sweep: what trims, corrects and presses these does so with them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from penink_cli.blasting import candidates, pen_lines, sweep, walls
+from penink_cli.blasting.level_lines import Lines, level_lines
+from penink_cli.blasting.phase import Field, Nodes, Plane, solve
+from penink_cli.blasting.shares import box_mean
+from penink_cli.blasting.sheet import SIGMA_PT, Cells, Sheet, resample
+from penink_cli.ground.model import Floats, HatchLayer, Ints
+from penink_cli.textures.even import direction
+
+#: Cells that lines are laid beyond the frame.
+PAD = 12
+#: Where a layer covers less than this, its lines run on as dense as they are around, at least so many a point: lines
+#: whose density falls to nothing would turn aside there.
+FAINT, SPARSEST = 0.08, 0.05
+AROUND_PT = 9.0
+#: Lines begin and end where the layer covers so much, a different tone for each: else their ends draw a contour.
+RAGGED = (0.004, 0.03)
+#: Short strokes: how long they are, how far apart the places tried, and the cosine of the most that they turn in a
+#: quarter of their length.
+FILLER_PT, FILLER_STEP_PT, STRAIGHT_ON = (10.0, 18.0), 2.0, 0.8
+#: Places at which each stroke looks at what lies under it.
+SAMPLES = 5
+#: A hand's bow is no greater than this part of the distance of its lines.
+BOW = 0.14
+
+
+@dataclass(frozen=True, eq=False)
+class Laid:
+    """What the lines of one layer were made of: lines a point at each node, and the phase there."""
+
+    density: Plane
+    phase: Plane
+
+
+@dataclass(frozen=True, eq=False)
+class DrawnStrokes:
+    """Strokes as `candidates.between_walls` takes them, and samples (n × SAMPLES, 2) of the lines under them."""
+
+    points: Floats
+    first: Ints
+    joined: npt.NDArray[np.bool_]
+    slack: Floats
+    samples: Floats
+
+
+class Form:
+    """A field of directions on a sheet, and what has been laid along it.
+
+    cos2, sin2: (rows, columns) of the sheet's cells, cosine and sine of twice the angle at which strokes run.
+    """
+
+    def __init__(self, sheet: Sheet, cos2: Cells, sin2: Cells, layers: tuple[HatchLayer, ...], borders: walls.Walls):
+        self.sheet = sheet
+        self.borders = borders
+        self.layers = layers
+        self._cos2, self._sin2 = cos2, sin2
+        dx, dy = sheet.width / sheet.columns, sheet.height / sheet.rows
+        self.nodes = Nodes((0.5 - PAD) * dx, (0.5 - PAD) * dy, dx, dy, sheet.rows + 2 * PAD, sheet.columns + 2 * PAD)
+        self._walls = borders.segments[borders.inside > 0]
+        self._laid: dict[int, Laid] = {}
+
+    def turned(self, i: int) -> tuple[Cells, Cells]:
+        """Cosine and sine of twice the angle at which layer i's strokes run, (rows, columns)."""
+        c, s = (np.float32(part) for part in direction(2.0 * turn_of(self.layers, i)))
+        return self._cos2 * c - self._sin2 * s, self._sin2 * c + self._cos2 * s
+
+    def normals(self, i: int) -> tuple[Plane, Plane]:
+        """The unit normal at each node, either way, of layer i's strokes."""
+        cos2, sin2 = (np.pad(plane, PAD, mode="edge") for plane in self.turned(i))
+        return _normal(cos2, sin2)
+
+    def swept(self, i: int, coverage: Floats, pen: float, finest: float, seed: int) -> candidates.Candidates:
+        """The strokes of layer i that cover each cell (rows, columns) as coverage asks, in no order."""
+        sheet, layer = self.sheet, self.layers[i]
+        cover: Plane = np.pad(coverage.astype(np.float32), PAD, mode="edge")
+        nx, ny = self.normals(i)
+        density: Plane = cover / (_pressed(cover, finest, pen) + np.float32(sheet.gain_pt) * (np.abs(nx) + np.abs(ny)))
+        density = _carried_on(density, cover, AROUND_PT / self.nodes.dx)
+        if layer.spacing_pt > 0:
+            density = np.minimum(density, np.float32(1.0 / layer.spacing_pt))
+        field = Field(self.nodes, nx, ny, density)
+        phase = solve(field, self._walls, seed * 7 + 1, sheet.each)
+        self._laid[i] = Laid(density, phase)
+        lines = self._lines(field, phase, 0.0, seed)
+        thresholds = np.random.default_rng([seed, 8]).uniform(*RAGGED, len(lines.ring))
+        seen = self._at_cells(cover, lines.points)
+        lines, _ = pen_lines.live(lines, seen > np.repeat(thresholds, np.diff(lines.first)))
+        strokes = self._strokes(lines, density, sweep.STROKE_PT, pen, seed)
+        cells = self._at_cells(cover, strokes.samples).reshape(-1, SAMPLES)
+        total: Floats = cells[:, 0].astype(np.float64)
+        for k in range(1, SAMPLES):
+            total = total + cells[:, k]
+        widths = sweep.pressed(total / SAMPLES, finest, pen)
+        rank = np.random.default_rng([seed, 3]).random(len(widths))
+        return self._candidates(strokes, widths, pen, rank)
+
+    def between(
+        self, i: int, pen: float, length: float, least: float, error: Cells, seed: int
+    ) -> candidates.Candidates:
+        """Strokes about so long half way between the lines of layer i, those where most is due first.
+
+        least: they must pass a place where so many times as much is due as the stroke itself adds,
+        error: (rows, columns) and where this is positive.
+        """
+        laid = self._laid[i]
+        lines = self._lines(Field(self.nodes, *self.normals(i), laid.density), laid.phase, 0.5, seed)
+        due = self._due(self.layers[i], lines.points, error)
+        lines, _ = pen_lines.live(
+            lines, self._near(lines, due > least * self._painted(pen) / (2.5066 * SIGMA_PT), length)
+        )
+        strokes = self._strokes(lines, laid.density, (0.7 * length, 1.3 * length), pen, seed)
+        due = self._due(self.layers[i], strokes.samples, error).reshape(-1, SAMPLES).max(axis=1)
+        return self._candidates(strokes, np.full(len(due), pen), pen, -due)
+
+    def _due(self, layer: HatchLayer, points: Floats, error: Cells) -> Floats:
+        """What is due at points (n, 2) where the layer is active and the error (rows, columns) positive."""
+        sheet = self.sheet
+        at = np.floor(points * (sheet.columns / sheet.width, sheet.rows / sheet.height)).astype(np.int64)
+        inside = (at >= 0).all(axis=1) & (at[:, 0] < sheet.columns) & (at[:, 1] < sheet.rows)
+        x, y = np.clip(at, 0, [sheet.columns - 1, sheet.rows - 1]).T
+        active = inside & (sheet.tone[y, x] > layer.low) & (error[y, x] > 0)
+        return np.where(active, sheet.residual[y, x], 0.0)
+
+    def _near(self, lines: Lines, wanted: npt.NDArray[np.bool_], length: float) -> npt.NDArray[np.bool_]:
+        """Whether one of the points on the same line within half such a length is wanted."""
+        reach = max(1, round(length / 2 / pen_lines.STEP_PT))
+        total = np.concatenate([[0], np.cumsum(wanted)])
+        who = np.repeat(np.arange(len(lines.ring)), np.diff(lines.first))
+        at = np.arange(len(wanted))
+        low = np.maximum(at - reach, lines.first[who])
+        high = np.minimum(at + reach + 1, lines.first[who + 1])
+        return np.asarray(total[high] > total[low])
+
+    def fillers(self, i: int, pen: float, error: Cells, seed: int) -> candidates.Candidates:
+        """Short strokes along the field where layer i is active and the error (rows, columns) positive."""
+        sheet, rng = self.sheet, np.random.default_rng([seed, 11])
+        x, y = np.meshgrid(
+            *(np.arange(FILLER_STEP_PT / 2, side, FILLER_STEP_PT) for side in (sheet.width, sheet.height))
+        )
+        middle = np.column_stack([x.ravel(), y.ravel()])
+        middle = middle + rng.uniform(-0.25, 0.25, middle.shape) * FILLER_STEP_PT
+        due = self._due(self.layers[i], middle, error)
+        middle, due = middle[due > 0], due[due > 0]
+        half = rng.uniform(*FILLER_PT, len(middle)) / 2
+        planes = self.turned(i)
+        knots = [middle]
+        for sign in (-1.0, 1.0):
+            at, ahead = middle, sign * self._ahead(planes, middle)
+            for _ in range(2):
+                # to where it breaks, and no further
+                at = at + ahead * (half / 2)[:, None]
+                knots = [at, *knots] if sign < 0 else [*knots, at]
+                here = self._ahead(planes, at)
+                along = here[:, 0] * ahead[:, 0] + here[:, 1] * ahead[:, 1]
+                here = here * np.where(along < 0, -1.0, 1.0)[:, None]
+                ahead = np.where((np.abs(along) > STRAIGHT_ON)[:, None], here, 0.0)
+        start, before, _, after, end = knots
+        # the cubic that passes where the line is at its thirds
+        p, q = before + (middle - before) / 3, middle + (after - middle) * (2 / 3)
+        inner = (18 * p - 9 * q - 5 * start + 2 * end) / 6, (18 * q - 9 * p - 5 * end + 2 * start) / 6
+        points = np.stack([start, *inner, end], axis=1)
+        none = np.zeros((len(middle), 2))
+        strokes = DrawnStrokes(
+            points.reshape(-1, 2), np.arange(len(middle) + 1) * 4, none.astype(bool), none, middle
+        )  # fmt: skip
+        return self._candidates(strokes, np.full(len(middle), pen), pen, -due)
+
+    def _ahead(self, planes: tuple[Cells, Cells], points: Floats) -> Floats:
+        """Unit vectors (n, 2) along the field of these planes at points (n, 2), either way."""
+        sheet = self.sheet
+        at = np.floor(points * (sheet.columns / sheet.width, sheet.rows / sheet.height)).astype(np.int64)
+        x, y = np.clip(at, 0, [sheet.columns - 1, sheet.rows - 1]).T
+        nx, ny = _normal(planes[0][y, x], planes[1][y, x])
+        return np.column_stack([ny, -nx]).astype(np.float64)
+
+    def _lines(self, field: Field, phase: Plane, level: float, seed: int) -> Lines:
+        """Level lines without the corners of the grid, in equal steps."""
+        lines = pen_lines.evened(level_lines(field, phase, level, self.sheet.each), sweep.SHORTEST_PT)
+        spacing = 1.0 / self._at_cells(field.density, lines.points).astype(np.float64)
+        return pen_lines.turned_rings(pen_lines.smoothed(lines, spacing), seed)
+
+    def _strokes(
+        self, lines: Lines, density: Plane, stroke_pt: tuple[float, float], pen: float, seed: int
+    ) -> DrawnStrokes:
+        """Lines cut into strokes as a hand draws them."""
+        middle = lines.points[(lines.first[:-1] + lines.first[1:]) // 2]
+        spacing = 1.0 / self._at_cells(density, middle).astype(np.float64)
+        parts = pen_lines.cut(lines, spacing, stroke_pt, sweep.SHORTEST_PT, seed)
+        n = len(parts.line)
+        length = pen_lines.lengths(lines)[parts.line]
+        steps = np.diff(lines.first)[parts.line] - 1
+        t = (np.arange(SAMPLES) + 0.5) / SAMPLES
+        at = parts.span[:, :1] + (parts.span[:, 1:] - parts.span[:, :1]) * t
+        at = np.clip(np.floor(at / length[:, None] * steps[:, None] + 0.5), 0, steps[:, None]).astype(np.int64)
+        samples = lines.points[(lines.first[parts.line][:, None] + at).ravel()]
+        apart = np.minimum(1.0 / self._at_cells(density, samples[SAMPLES // 2 :: SAMPLES]).astype(np.float64), 40.0)
+        # the hand's variation, and a small gap where one stroke follows another
+        rng = np.random.default_rng([seed, 2])
+        drawn = parts.span[:, 1] - parts.span[:, 0]
+        hand = rng.normal(0, 1, (n, 3))
+        waver = sweep.WAVER * np.minimum(apart, 8.0)
+        hand[:, 0] *= waver
+        hand[:, 1] *= 0.7 * waver
+        hand[:, 2] *= np.minimum(sweep.BOW_PT, BOW * apart) * np.minimum(drawn / 40.0, 1.0)
+        lift = 0.4 * self._painted(pen)
+        slack = np.where(parts.joined, 0.0, sweep.SLACK_PT)
+        ends = np.where(parts.joined, lift, -slack) * np.array([1.0, -1.0])
+        span = parts.span + np.where((drawn > 2.5 * lift)[:, None], ends, 0.0)
+        points, first = pen_lines.drawn(lines, pen_lines.Parts(parts.line, span, parts.joined), hand)
+        return DrawnStrokes(points, first, parts.joined, slack / (span[:, 1] - span[:, 0])[:, None], samples)
+
+    def _candidates(self, strokes: DrawnStrokes, widths: Floats, pen: float, rank: Floats) -> candidates.Candidates:
+        return candidates.between_walls(
+            strokes.points, strokes.first, strokes.joined, strokes.slack, widths, self._painted(pen), self.borders,
+            self.sheet, rank,
+        )  # fmt: skip
+
+    def _painted(self, pen: float) -> float:
+        """How wide a device paints a stroke of the pen, whatever its direction."""
+        return pen + 1.27 * self.sheet.gain_pt
+
+    def _at_cells(self, values: Plane, points: Floats) -> Plane:
+        """Values (rows, columns of the nodes) at the nodes nearest to points (n, 2)."""
+        nodes = self.nodes
+        at = np.floor((points - (nodes.left, nodes.top)) / (nodes.dx, nodes.dy) + 0.5).astype(np.int64)
+        at = np.clip(at, 0, (nodes.columns - 1, nodes.rows - 1))
+        found: Plane = values[at[:, 1], at[:, 0]]
+        return found
+
+
+def turn_of(layers: tuple[HatchLayer, ...], i: int) -> float:
+    """Degrees of layer i from the field: what the layer says, else what it has from the first one."""
+    own = layers[i].turn
+    return layers[i].angle - layers[0].angle if own is None else own
+
+
+def _normal(cos2: Plane, sin2: Plane) -> tuple[Plane, Plane]:
+    """x and y of the unit normal, either way, of lines at half the angle that has this cosine and sine."""
+    # by whichever of the half angle's sine and cosine is the greater
+    half = np.sqrt(np.float32(0.5) * (1 + np.abs(cos2)))
+    other = np.float32(0.5) * sin2 / half
+    flat = cos2 >= 0
+    return np.where(flat, -other, -np.copysign(half, sin2)), np.where(flat, half, np.abs(other))
+
+
+def _pressed(coverage: Plane, finest: float, pen: float) -> Plane:
+    """`sweep.pressed` in single precision."""
+    return np.float32(finest) + np.float32(pen - finest) * np.minimum(coverage * np.float32(1 / sweep.LIGHT), 1)
+
+
+def _carried_on(density: Plane, cover: Plane, sigma: float) -> Plane:
+    """Densities, and where next to nothing is covered those of the surroundings (σ in nodes)."""
+    known = density * np.minimum(cover * np.float32(1 / FAINT), 1)
+    weight = _blurred(known, sigma)
+    around = np.maximum(
+        _blurred(known * density, sigma) / np.maximum(weight, np.float32(1e-6)), np.float32(SPARSEST)
+    )  # fmt: skip
+    t = np.clip((cover - np.float32(FAINT / 4)) * np.float32(4 / (3 * FAINT)), 0, 1)
+    t = t * t * (3 - 2 * t)
+    return np.where(density > around, density, density * t + around * (1 - t)).astype(np.float32)
+
+
+def _blurred(values: Plane, sigma: float) -> Plane:
+    """Values (rows, columns) blurred by about a Gaussian: means over boxes, three times, of means of 4 × 4 cells."""
+    rows, columns = values.shape
+    padded = np.pad(values, ((0, -rows % 4), (0, -columns % 4)), mode="edge")
+    small = padded.reshape(padded.shape[0] // 4, 4, -1, 4).mean(axis=(1, 3), dtype=np.float64)
+    radius = max(1, round(sigma / 4))
+    for _ in range(3):
+        small = box_mean(small, radius)
+    return resample(small, rows, columns).astype(np.float32)
