@@ -16,8 +16,8 @@ from penink_cli.blasting.level_lines import Lines, level_lines
 from penink_cli.blasting.phase import Field, Nodes, Plane, solve
 from penink_cli.blasting.shares import box_mean
 from penink_cli.blasting.sheet import SIGMA_PT, Cells, Sheet, resample
+from penink_cli.ground.angles import direction
 from penink_cli.ground.model import Floats, HatchLayer, Ints
-from penink_cli.textures.even import direction
 
 #: Cells that lines are laid beyond the frame.
 PAD = 12
@@ -86,8 +86,8 @@ class Form:
         sheet, layer = self.sheet, self.layers[i]
         cover: Plane = np.pad(coverage.astype(np.float32), PAD, mode="edge")
         nx, ny = self.normals(i)
-        density: Plane = cover / (_pressed(cover, finest, pen) + np.float32(sheet.gain_pt) * (np.abs(nx) + np.abs(ny)))
-        density = _carried_on(density, cover, AROUND_PT / self.nodes.dx)
+        gained = np.float32(sheet.gain_pt) * (np.abs(nx) + np.abs(ny))
+        density = _carried_on(cover / (_pressed(cover, finest, pen) + gained), cover, AROUND_PT / self.nodes.dx)
         if layer.spacing_pt > 0:
             density = np.minimum(density, np.float32(1.0 / layer.spacing_pt))
         field = Field(self.nodes, nx, ny, density)

@@ -11,7 +11,7 @@ from penink_cli.ground.model import Floats, HatchLayer
 GIVES_WAY, BACK_AFTER = 0.2, 0.35
 #: Where black begins, the lines of the first layer close up until they overlap by so much; what is not quite black is
 #: then left out, stroke by stroke. Layers that cross each other in the dark are a grainy net instead.
-BLACK = 1.12
+BLACK = 1.4
 #: How much darker than where black begins a place must be to be black amid what is not.
 BLACKER = 0.03
 #: Over so many cells on either side the first layer closes up, and the others go on into the black.

@@ -20,7 +20,7 @@ from penink_cli.options.common import (
     verbose_option,
     warn,
 )
-from penink_cli.options.inputs import only_one_standard_input, read_edges, read_grey
+from penink_cli.options.inputs import only_one_standard_input, read_directions, read_edges, read_grey
 from penink_cli.options.layers import read_layers
 from penink_cli.options.progress import progress
 from penink_cli.options.sheet import check_sheet
@@ -63,6 +63,13 @@ RULES = ("best", "strict", "threshold")
     help="best: true tone. strict: the paper's rule. threshold: each stroke where the tone exceeds its own.",
 )
 @click.option(
+    "--directions",
+    "directions_file",
+    type=click.Path(allow_dash=True),
+    metavar="FILE",
+    help="A field of directions of the picture (see penink detect-directions): hatching runs along it.",
+)
+@click.option(
     "--ink",
     "ink_files",
     type=click.Path(allow_dash=True),
@@ -86,6 +93,7 @@ def blast(
     seed: int,
     device_dpi: float | None,
     rule: str,
+    directions_file: str | None,
     ink_files: tuple[str, ...],
     threads: int | None,
     quiet: bool,
@@ -99,6 +107,7 @@ def blast(
 
     \b
     penink blast --texture crosshatch --width 4in photo.pgm | penink to-ps -o photo.ps
+    penink blast --texture form -e photo.edges.json --directions photo.directions.pgm --width 4in photo.pgm
     """
     from penink_cli.blasting.blast import TICKS
     from penink_cli.blasting.blast import blast as blast_tone
@@ -108,11 +117,14 @@ def blast(
 
     if (width is None) == (dpi is None):
         raise click.UsageError("give one of --width and --dpi")
-    only_one_standard_input(file, edges_file, *ink_files, texture_name if texture_name == "-" else None)
+    piped_texture = texture_name if texture_name == "-" else None
+    only_one_standard_input(file, edges_file, directions_file, *ink_files, piped_texture)
     texture = find_texture(texture_name)
     edges = read_edges(edges_file, max_pixels)
     image = read_grey(file, max_pixels)
     rows, columns = image.values.shape
+    wide, high = (columns, rows) if edges is None else (edges.width, edges.height)
+    directions = read_directions(directions_file, wide, high, max_pixels)
     width_pt = width if width is not None else columns / (dpi or 1.0) * 72.0
     height_pt = width_pt * rows / columns
     check_sheet(width_pt, height_pt)
@@ -120,6 +132,8 @@ def blast(
     tone = tone_curve(image, gamma)
     for line in warnings(tone, texture, pen, device_dpi):
         warn(line)
+    if directions and not follows(texture, rule):
+        warn(f"{texture.name} is not drawn along directions: by the rule \"best\" a texture with hatching layers is")
     with progress(TICKS, "blasting", quiet) as more:
         strokes = blast_tone(
             tone,
@@ -132,6 +146,7 @@ def blast(
             device_dpi=device_dpi,
             rule=rule,
             outlines=Strokes.joined(ink) if ink else None,
+            directions=directions,
             threads=threads or processors(),
             tick=lambda: more(1),
         )
@@ -140,6 +155,11 @@ def blast(
         reporter(verbose)(f"{len(strokes)} strokes of {texture.name}, {pens} wide, on {width_pt:g} x {height_pt:g} pt")
     with writing(output, binary=False) as out:
         strokes_format.write(out, strokes)
+
+
+def follows(texture: Texture, rule: str) -> bool:
+    """Whether strokes of a texture run along a field of directions where there is one."""
+    return rule == "best" and bool(texture.layers)
 
 
 def warnings(tone: Floats, texture: Texture, pen: float | None, device_dpi: float | None) -> list[str]:
