@@ -20,6 +20,7 @@ from penink_cli.blasting import candidates, curves, thin, walls
 from penink_cli.blasting.form import Form
 from penink_cli.blasting.shares import shares
 from penink_cli.blasting.sheet import Cells, Sheet
+from penink_cli.ground.device import MEAN
 from penink_cli.ground.model import EdgeList, HatchLayer, Strokes
 
 #: What a run of ink must gain, in cells × tone: less, and it is not worth a stroke.
@@ -75,7 +76,7 @@ def hatch_sheet(
     pens = [pen_pt or layer.pen_pt for layer in layers]
     finest = pens if pen_pt else [min(pen, max(FINE * pen, FINE_DOTS * gain_pt)) for pen in pens]
     form = None if directions is None else Form(sheet, *directions, layers, borders)
-    along = thin.strokes_along(sheet, min(pens), min(pens) + gain_pt * 1.27, pen_pt is not None)
+    along = thin.strokes_along(sheet, min(pens), min(pens) + MEAN * gain_pt, pen_pt is not None)
     draw_first(sheet, along)
     wide = sheet.low_pass(sheet.tone)
     drawn_wide = sheet.low_pass(sheet.ink)

@@ -26,6 +26,7 @@ import numpy.typing as npt
 
 from penink_cli.blasting.tile import thresholds
 from penink_cli.ground.angles import direction
+from penink_cli.ground.device import DOT
 from penink_cli.ground.model import Floats, HatchLayer, Ints, Texture
 
 Bytes = npt.NDArray[np.uint8]
@@ -201,15 +202,17 @@ def give_way() -> Bytes:
 GRID_PT, FARTHEST = 0.25, 127
 #: Strokes that enter later than this add more bytes than ink: the first ones come again, elsewhere, instead.
 LATEST = 0.9
-#: What a device of 600 dpi adds to a pen in the mean over all directions: `PEN_PT` is meant for one of 0.4 pt.
-WIDENED_PT = 0.14
+#: The pixel of a device of 600 dpi, which tables are meant for, and what it adds to a pen (a dot's gain; a line's is
+#: 0.15): `PEN_PT` is a pen of 0.4 pt on it.
+PIXEL_PT = 72 / 600
+WIDENED_PT = round(DOT * PIXEL_PT, 2)
 
 
 def strokes(texture: Texture) -> Screen:
     """The screen of any other texture: the segments of its tile's strokes, on a grid of 1/4 pt."""
     tile = texture.strokes
     pen = float(np.median(tile.widths)) + WIDENED_PT
-    enters = thresholds(texture, WIDENED_PT / 1.27)
+    enters = thresholds(texture, PIXEL_PT)
     points, limits, equal = [], [], []
     for i in np.flatnonzero(enters <= LATEST).tolist():
         stroke = tile[i]
@@ -252,7 +255,7 @@ def widening(cubics: Floats) -> float:
     """
     steps = np.diff(cubics.reshape(-1, 4, 2), axis=1)
     length = np.sqrt((steps**2).sum(axis=2)).sum()
-    return float(np.abs(steps).sum() / length) if length > 0 else WIDENED_PT * 600 / 72
+    return float(np.abs(steps).sum() / length) if length > 0 else WIDENED_PT / PIXEL_PT
 
 
 def _short(segment: Floats) -> list[Floats]:

@@ -17,7 +17,7 @@ import numpy.typing as npt
 
 from penink_cli.blasting import curves
 from penink_cli.blasting._compiled import threshold as _threshold
-from penink_cli.blasting.screens import WIDENED_PT, Screen, ThresholdTable, table
+from penink_cli.blasting.screens import PIXEL_PT, WIDENED_PT, Screen, ThresholdTable, table
 from penink_cli.blasting.sheet import resample
 from penink_cli.ground.angles import direction
 from penink_cli.ground.model import EdgeList, Floats, Ints, Strokes, Texture
@@ -191,7 +191,7 @@ def _unit_of(texture: Texture, pen_pt: float | None, device_dpi: float | None) -
 def _unit(sizes: ThresholdTable, pen_pt: float | None, gain_pt: float) -> float:
     """The magnification of pen and tile, in points, for a pen if one is given, on a device that widens it so."""
     if pen_pt is not None:  # the table takes a printer of 600 dpi for granted
-        return (pen_pt + gain_pt * WIDENED_PT * 600 / 72) / sizes.pen_pt
+        return (pen_pt + gain_pt * WIDENED_PT / PIXEL_PT) / sizes.pen_pt
     return max(sizes.magnification, LEAST_PIXELS * gain_pt / sizes.pen_pt)
 
 

@@ -69,7 +69,7 @@ def to_ps(
 
     layers = read_layers(files)
     if device_dpi is not None:
-        from penink_cli.ground.gain import narrowed
+        from penink_cli.ground.device import narrowed
 
         layers = [narrowed(layer, device_dpi) for layer in layers]
     page = lay_out(layers, paper, margin, landscape)

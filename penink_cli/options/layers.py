@@ -141,7 +141,7 @@ def as_printed(layers: Sequence[Strokes], device_dpi: float | None) -> list[Stro
     """The layers with what a printer adds to their width, if one is named."""
     if device_dpi is None:
         return list(layers)
-    from penink_cli.ground.gain import widened
+    from penink_cli.ground.device import widened
 
     return [widened(layer, device_dpi) for layer in layers]
 

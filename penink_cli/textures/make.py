@@ -13,6 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from penink_cli.ground.angles import direction
+from penink_cli.ground.device import DOT, MEAN
 from penink_cli.ground.model import Floats, HatchLayer, Strokes, Texture
 from penink_cli.textures.even import Torus
 
@@ -26,8 +27,8 @@ LAYER_TURNS = (0.0, 90.0, 45.0, 135.0)
 #: Lines along the form tell it best while they are alone; those over them lie neither square to them, which looks
 #: woven, nor near them, which shimmers. Above the last tone it is black.
 FORM_ENDS, FORM_TURN, FORM_BLACK = (0.65, 0.92), 50.0, 0.92
-#: A stroke paints a little more than its pen is wide: the device's gain at 600 dpi, roughly.
-GAIN_PT = 0.15
+#: A stroke paints a little more than its pen is wide: what a device of 600 dpi adds.
+GAIN_PT, DOT_GAIN_PT = MEAN * 72 / 600, DOT * 72 / 600
 
 #: Lines that a brick is hatched with before all is crossed by others, of 64 for which there is room.
 HATCHED = 56
@@ -194,7 +195,7 @@ def stipple(angle: float, pen: float, spacing: float, layers: int, seed: int) ->
         return rng.uniform(0, size, (n, 1, 2))
 
     # the area of a dot as the length of line it stands for
-    area = math.pi / 4 * (pen + 1.27 * GAIN_PT) ** 2
+    area = math.pi / 4 * (pen + DOT_GAIN_PT) ** 2
     strokes = fill(torus, dots, area / (pen * 0.8), FULL, 0.0, 60, rng)
     return tile("stipple", strokes, [pen] * len(strokes), size, size, seed, whole=True)
 

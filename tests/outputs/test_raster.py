@@ -125,7 +125,7 @@ def test_strokes_far_away_cost_nothing_and_do_nothing():
 
 
 def test_strokes_widened_by_the_gain_are_what_a_printer_paints(tmp_path):
-    from penink_cli.ground.gain import narrowed, widened
+    from penink_cli.ground.device import narrowed, widened
     from tests.outputs.test_postscript import written
 
     drawing = crosshatch(1200, 216)

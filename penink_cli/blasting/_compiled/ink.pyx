@@ -12,8 +12,11 @@ whose order could depend on anything but the input, so the bytes are the same ev
 from libc.math cimport fabs, sqrt
 from penink_cli.blasting._compiled.rows cimport Outline, bits_set, meet_rows, whole_places
 
-#: Which part of a pixel's width an edge gains on the mean; measured on strokes in all directions, 300 to 1200 dpi.
-cdef double GAIN = 0.985
+from penink_cli.ground.device import DOT, EDGE
+
+#: What a device adds to the width of a stroke times |cos θ| + |sin θ|, and to that of a dot, in its pixels.
+cdef double EDGE_GAIN = EDGE
+cdef double DOT_GAIN = DOT
 #: Words with the first n bits set.
 cdef unsigned long long[65] UP_TO
 for _bits in range(65):
@@ -140,10 +143,8 @@ cdef double half_width(double width, double gain, double dx, double dy) noexcept
     """Half the width that the device paints, see `sheet.Sheet`."""
     cdef double length = sqrt(dx * dx + dy * dy)
     if length < 1e-9:
-        # a disc touches as many pixels as one this much wider: Ghostscript's, from 0.4 to 2.5 pt at 300 to 1200 dpi,
-        # are 1.15 to 1.18 pixels wider, for it draws polygons inscribed in them
-        return 0.5 * (width + 1.16 * gain)
-    return 0.5 * (width + GAIN * gain * (fabs(dx) + fabs(dy)) / length)
+        return 0.5 * (width + DOT_GAIN * gain)
+    return 0.5 * (width + EDGE_GAIN * gain * (fabs(dx) + fabs(dy)) / length)
 
 
 cdef long long stroke(
