@@ -83,7 +83,8 @@ def main() -> None:
                 "crosshatch .4": flat("crosshatch", 0.4, dpi),
             }
             for what, strokes in drawings.items():
-                tones = [by_ghostscript(strokes, dpi, Path(name)), on_a_screen(strokes, dpi), on_the_sheet(strokes, dpi)]
+                tones = [by_ghostscript(strokes, dpi, Path(name))]
+                tones += [on_a_screen(strokes, dpi), on_the_sheet(strokes, dpi)]
                 figures = "".join(f"{100 * tone:{w}.2f}" for tone, w in zip(tones, (13, 9, 9)))
                 print(f"{what:26}{dpi:6g}{figures}{100 * (max(tones) - min(tones)):8.2f}", flush=True)
 
