@@ -17,8 +17,8 @@ FLOORS = (
     ("ground",),
     ("geometry", "travel"),
     ("arrangement", "reconstruction", "textures", "formats"),
-    ("composition",),
-    ("directions",),
+    ("composition", "directions"),
+    ("lines",),
     ("blasting",),
     ("outputs", "selfdrawing"),
     ("illustration",),
@@ -29,7 +29,7 @@ FLOORS = (
     ("__main__",),
 )
 FLOOR = {room: floor for floor, rooms in enumerate(FLOORS) for room in rooms}
-ALGORITHMS = ("geometry", "travel", "composition", "directions", "arrangement", "reconstruction", "blasting")
+ALGORITHMS = ("geometry", "travel", "composition", "directions", "lines", "arrangement", "reconstruction", "blasting")
 #: Libraries, and the rooms that must not know them.
 STRANGERS = {
     "click": (*ALGORITHMS, "ground", "textures", "formats", "outputs", "illustration", "selfdrawing"),

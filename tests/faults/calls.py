@@ -9,8 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
-from penink_cli.formats import directions, edge_list, pgm
-from penink_cli.ground.model import Directions, EdgeList, GreyImage
+from penink_cli.formats import edge_list, pgm
+from penink_cli.ground.model import EdgeList, GreyImage
 
 WIDTH, HEIGHT = 24, 18
 
@@ -30,9 +30,8 @@ class Call:
 CALLS = {
     "compose": Call("photo.png", ("--width", "0.35in")),
     "detect-edges": Call("photo.png"),
+    "detect-lines": Call("photo.png"),
     "extract-samples": Call("photo.png", ("-e", "photo.edges.json")),
-    "detect-directions": Call("photo.png", ("-e", "photo.edges.json", "--strokes", "photo.strokes.jsonl")),
-    "show-directions": Call("photo.png", ("-e", "photo.edges.json", "--directions", "photo.directions.pgm")),
     "reduce": Call("samples.pgm", ("-e", "photo.edges.json", "--factor", "2")),
     "enlarge": Call("samples.pgm", ("-e", "photo.edges.json", "--scale", "3")),
     "blast": Call("samples.pgm", ("--texture", "crosshatch", "--width", "0.35in", "-e", "photo.edges.json")),
@@ -43,6 +42,7 @@ CALLS = {
     "to-png": Call("photo.strokes.jsonl", ("--dpi", "100")),
     "show-edges": Call("photo.png", ("-e", "photo.edges.json")),
     "separate": Call("photo.png", ("--grey", "0,0.5")),
+    "lines": Call("photo.lines.json", ("--width", "0.35in")),
     "outline": Call("photo.edges.json", ("--width", "0.35in")),
     "render": Call("photo.illustration.json", ("--scale", "1")),
     "draw": Call("photo.png", ("--width", "0.35in", "--texture", "crosshatch")),
@@ -63,13 +63,6 @@ def disc() -> GreyImage:
     y, x = np.mgrid[:HEIGHT, :WIDTH]
     inside = (x - 12) ** 2 + (y - 9) ** 2 < 30
     return GreyImage(np.where(inside, 40 + 3 * y, 200 + x).astype(np.uint8))
-
-
-def rings() -> Directions:
-    """Round the disc's middle, more surely the nearer."""
-    y, x = np.mgrid[:HEIGHT, :WIDTH] + 0.5 - [[[9]], [[12]]]
-    square = x * x + y * y
-    return Directions((y * y - x * x) / square, -2 * x * y / square, 1 / (1 + square / 100))
 
 
 def frame(points: list[tuple[float, float]]) -> EdgeList:
@@ -94,7 +87,6 @@ def make_inputs(folder: Path) -> None:
     (folder / "samples.pgm").write_bytes(encoded(pgm.write, image))
     octagon = [(7.5, 6), (10, 3.5), (14, 3.5), (16.5, 6), (16.5, 12), (14, 14.5), (10, 14.5), (7.5, 12)]
     (folder / "photo.edges.json").write_bytes(encoded(edge_list.write, frame(octagon)))
-    (folder / "photo.directions.pgm").write_bytes(encoded(directions.write, rings()))
     drawn = strokes_text(
         72,
         54,
@@ -103,6 +95,10 @@ def make_inputs(folder: Path) -> None:
         (1, [[5, 50], [9, 40], [60, 40], [70, 5]]),
     )
     (folder / "photo.strokes.jsonl").write_bytes(drawn)
+    lines = [{"points": [[2, 3], [9, 4], [20, 12]], "weight": [0.2, 1, 0.4], "rank": 5}]
+    lines += [{"points": [[12, 9]], "weight": [1], "rank": 3, "breadth": 3}]
+    document = {"format": "penink-lines", "version": 1, "width": WIDTH, "height": HEIGHT, "lines": lines}
+    (folder / "photo.lines.json").write_text(json.dumps(document))
     layer = {"samples": "samples.pgm", "edges": "photo.edges.json", "texture": "crosshatch", "outline": {}}
     manifest = {"format": "penink-illustration", "version": 1, "width": 25.2, "height": 18.9, "layers": [layer]}
     (folder / "photo.illustration.json").write_text(json.dumps(manifest))

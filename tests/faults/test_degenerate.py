@@ -80,6 +80,10 @@ def checked(name: str, out: bytes) -> None:
         pgm.read(io.BytesIO(out), name, 10**6)
     elif b"penink-edges" in out[:40]:
         edge_list.read(io.BytesIO(out), name)
+    elif b"penink-lines" in out[:40]:
+        from penink_cli.formats import lines
+
+        lines.read(io.BytesIO(out), name)
     elif b"penink-strokes" in out[:40]:
         from penink_cli.formats import strokes
 

@@ -1,0 +1,76 @@
+"""``penink detect-lines``."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from penink_cli.ground.streams import writing
+from penink_cli.options.common import Finite, filter_options, processors, reporter, threads_option, verbose_option
+from penink_cli.options.inputs import only_one_standard_input, photo_options, read_directions, read_photo
+
+if TYPE_CHECKING:
+    from penink_cli.ground.model import Directions
+
+
+@click.command(name="detect-lines")
+@filter_options
+@photo_options
+@click.option("--black/--white", "black", default=None, help="Only dark lines, or only light ones.  [default: both]")
+@click.option("--min-length", type=Finite(least=0), metavar="N", help="Shortest line, pixels.  [default: by the size]")
+@click.option(
+    "--directions",
+    "directions_file",
+    type=click.Path(allow_dash=True),
+    metavar="FILE",
+    help="The direction field: faint lines across it are left away.  [default: by the photo]",
+)
+@threads_option
+@verbose_option
+def detect_lines(
+    file: str | None,
+    output: str | None,
+    max_pixels: int,
+    black: bool | None,
+    min_length: float | None,
+    directions_file: str | None,
+    threads: int | None,
+    verbose: bool,
+    **_: Any,
+) -> None:
+    """Find the telling lines of a photograph.
+
+    What a pen would draw of it besides its tone: contours, folds, whiskers, pupils; and light lines on dark ground. The
+    result is a list in pixels of the photo, each line with a rank: it serves every size on paper.
+
+    \b
+    penink detect-lines photo.png -o photo.lines.json
+    penink lines --width 6in photo.lines.json | penink to-ps -o lines.ps
+    """
+    from penink_cli.formats import lines
+    from penink_cli.lines import detection
+
+    only_one_standard_input(file, directions_file)
+    grey = read_photo(file, max_pixels).grey
+    rows, columns = grey.shape
+    field = read_directions(directions_file, columns, rows, max_pixels)
+
+    def at_size(height: int, width: int) -> Directions:
+        from penink_cli.directions.reading import at_size
+
+        assert field is not None
+        return at_size(field, None, height, width, threads)
+
+    found = detection.detect_lines(
+        grey,
+        black=black is not False,
+        white=black is not True,
+        min_length=min_length,
+        directions=at_size if field is not None else None,
+        threads=threads or processors(),
+    )
+    spots = int((found.breadth > 0).sum())
+    reporter(verbose)(f"{len(found)} lines, {int(found.white.sum())} of them light, {spots} spots")
+    with writing(output, binary=False) as out:
+        lines.write(out, found)

@@ -1,0 +1,1 @@
+"""Telling lines: found in a photograph, ranked, chosen for a size on paper, and drawn."""

@@ -1,0 +1,1 @@
+"""Compiled loops of this room; each is imported by one module beside this folder."""

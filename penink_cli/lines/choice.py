@@ -1,0 +1,105 @@
+"""Which telling lines there is room for at one size on paper: the most telling first, under a local quota."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from penink_cli.ground.model import Floats, Ints, Lines
+
+#: Room is kept on a map of such cells (points), over a Gaussian of this σ.
+CELL_PT, ROOM_PT = 3.0, 10.0
+#: A line of this rank may go where there is DENSITY; one of higher rank where it is fuller, up to MOST times.
+USUAL_RANK, LEAST_PART, MOST = 6.0, 0.7, 1.6
+#: The least rank at this size on paper (root of the area, points): with more room faint lines become worth while.
+SIZE_PT, LEAST_RANK, RANKS = 432.0, 0.8, (0.4, 1.6)
+#: What is shorter on paper is no line, what is finer no spot.
+SHORTEST_PT, FINEST_SPOT_PT = 3.0, 0.35
+
+
+@dataclass(frozen=True)
+class LineChoice:
+    """Which telling lines are drawn, and how.
+
+    pen_pt: width of the broadest strokes. even: one width from end to end, as a technical pen draws.
+    density: points of line in a square point that there is room for. per_inch2: inches of line in a square inch
+    that all lines may come to. min_rank: the least rank, None for one that suits the size.
+    """
+
+    pen_pt: float = 1.3
+    even: bool = False
+    density: float = 0.13
+    per_inch2: float = 6.0
+    min_rank: float | None = None
+
+
+def least_rank(width_pt: float, height_pt: float) -> float:
+    """The rank from which on lines are drawn at that size, unless the choice says another."""
+    rank = LEAST_RANK * math.sqrt(SIZE_PT / math.sqrt(width_pt * height_pt))
+    return min(max(rank, RANKS[0]), RANKS[1])
+
+
+def chosen(lines: Lines, width_pt: float, height_pt: float, choice: LineChoice, white: bool = False) -> Ints:
+    """Indices of the lines that there is room for, by falling rank; spots take none."""
+    least = least_rank(width_pt, height_pt) if choice.min_rank is None else choice.min_rank
+    scale = np.array([width_pt / lines.width, height_pt / lines.height])
+    order = np.argsort(-lines.rank, kind="stable")
+    order = order[(lines.rank[order] >= least) & (lines.white[order] == white)]
+    room = _Room(width_pt, height_pt)
+    budget = choice.per_inch2 * width_pt * height_pt / 72.0
+    out = []
+    for i in order.tolist():
+        points = lines[i] * scale
+        if lines.breadth[i] > 0:
+            if lines.breadth[i] * float(scale[0]) >= FINEST_SPOT_PT:
+                out.append(i)
+            continue
+        steps = lengths(points)
+        length = math.fsum(steps.tolist())
+        if length < SHORTEST_PT or length > budget:
+            continue
+        limit = choice.density * min(MOST, LEAST_PART + lines.rank[i] / USUAL_RANK)
+        if room.take(points, steps, limit):
+            out.append(i)
+            budget -= length
+    return np.array(out, np.int64)
+
+
+class _Room:
+    """How much line lies around each place of a sheet: points in a square point, over a Gaussian."""
+
+    def __init__(self, width_pt: float, height_pt: float):
+        sigma = ROOM_PT / CELL_PT
+        self.reach = r = math.ceil(2.5 * sigma)
+        bell = np.array([round(math.exp(-0.5 * (k / sigma) ** 2), 9) for k in range(-r, r + 1)])
+        self.kernel = bell[:, None] * bell
+        self.kernel /= math.fsum(self.kernel.ravel().tolist()) * CELL_PT * CELL_PT
+        self.map = np.zeros((math.ceil(height_pt / CELL_PT) + 1 + 2 * r, math.ceil(width_pt / CELL_PT) + 1 + 2 * r))
+
+    def take(self, points: Floats, steps: Floats, limit: float) -> bool:
+        """Whether there is room for a line (k, 2); it is then taken."""
+        middle = (points[1:] + points[:-1]) / 2
+        # steps longer than a cell in parts, shorter ones together
+        n = np.maximum(np.ceil(steps / CELL_PT), 1).astype(np.int64)
+        part = np.repeat(np.arange(len(n)), n)
+        along = (np.arange(len(part)) - np.repeat(np.cumsum(n) - n, n) + 0.5) / n[part] - 0.5
+        at = np.floor((middle[part] + along[:, None] * (points[1:] - points[:-1])[part]) / CELL_PT).astype(np.int64)
+        at = np.clip(at, 0, np.array(self.map.shape[::-1]) - 1 - 2 * self.reach)
+        r = self.reach
+        there = self.map[at[:, 1] + r, at[:, 0] + r]
+        if math.fsum(there.tolist()) > limit * len(there):
+            return False
+        inked = (steps / n)[part]
+        change = np.flatnonzero((at[1:] != at[:-1]).any(axis=1)) + 1
+        starts = np.concatenate([[0], change])
+        for (x, y), ink in zip(at[starts].tolist(), np.add.reduceat(inked, starts).tolist()):
+            self.map[y : y + 2 * r + 1, x : x + 2 * r + 1] += self.kernel * ink
+        return True
+
+
+def lengths(points: Floats) -> Floats:
+    """Of each leg of a path (k, 2)."""
+    steps = points[1:] - points[:-1]
+    return np.asarray(np.sqrt(steps[:, 0] * steps[:, 0] + steps[:, 1] * steps[:, 1]))

@@ -1,0 +1,295 @@
+"""From a photograph to its telling lines.
+
+1. The photo is reduced, or enlarged a little, to a working size: what a drawing of about 6 inches can show.
+2. Its local contrast is evened out, and a bank of oriented filters answers to pieces of dark and of light lines, at a
+   fine scale and at a coarse one. What answers in every direction is no line, what is as strong all around is texture.
+3. Lines are followed from the strongest answers, fine ones first; coarse ones stay where no fine one is near.
+4. Each gets a rank: long, clear, even, alone, and along the field of directions, or on light ground. Faint short ones
+   that run across the form are the worms that spoil faces and skies.
+5. Small dark things that are no lines (pupils) are spots, and what was traced in them is left away.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from penink_cli.composition.filters import blurred, enlarged, shrunk
+from penink_cli.ground.model import Directions, Floats, Lines
+from penink_cli.lines import oriented, tracing
+from penink_cli.lines.oriented import Picture
+from penink_cli.lines.spots import Spot, covered, spots
+from penink_cli.lines.tracing import Traces
+
+#: The working size: the root of its area, pixels, how far a smaller photo is enlarged at the most, the longest side.
+SIDE, MOST_ENLARGED, LONGEST = 760.0, 2.0, 20_000
+#: What ranks and lengths are reckoned in: so many working pixels are a point of a picture of usual size.
+PIXELS_PER_PT = 1.76
+#: Contrast is evened out over a Gaussian of this σ (pixels): a deviation of EVEN / (its own + FLOOR), within bounds.
+LOCAL, EVEN, FLOOR, GAINS = 24.0, 0.10, 0.035, (0.4, 1.8)
+#: and less where there is grain all over: so many of its deviations are added to the floor.
+GRAIN = 5.0
+#: σ across and along, pixels, of the fine bank, and of the coarse one on a view of half the size.
+FINE, COARSE = (0.75, 2.0), (1.0, 3.5)
+#: Lines begin at a response of HIGH and end at LOW; FULL is that of a line of the broadest pen.
+HIGH, LOW, FULL = 0.005, 0.00175, 0.022
+WHITE_HIGH = 0.006
+#: How much of the surroundings' response is taken off.
+INHIBITION = 0.25
+#: In texture, where a line's response is less than this part of its own and its surroundings', it is worth less.
+ALONE = 0.4
+#: A light line must be lighter than what lies so many pixels to each side of it by this.
+BESIDE, RIDGE = 3.0, 0.03
+#: A spot's rank: so many times the cube of its contrast, a part of that where it is longer than broad, and less where
+#: there is more of lines around it than this response: in lettering they are not spots but letters.
+SPOT, LONG_SPOT, CALM = 12.0, 0.6, 0.004
+#: What lies in or along a spot and is no longer than so many times the spot is a part of it.
+AROUND = 4.0
+#: How far from a spot a fine line, and a coarse one, are still its own: the filters' reach.
+BESIDE_SPOT = (1.5, 9.0)
+#: A coarse line stays where at least so much of it is further than so many pixels from any fine line of some rank.
+FAR, NEAR, FAR_RANK = 0.7, 5.0, 0.45
+#: σ of the field that lines are held against where none is given, and of the tone around them, pixels.
+FIELD, GROUND = 8.0, 4.0
+#: Lines no further from the frame than this (pixels) all along are a scan's rim.
+RIM = 5.0
+LEAST_RANK, SHORTEST = 0.4, 5.0
+#: A point is kept every so many pixels, and where a line ends.
+STEP = 4.0
+
+
+def detect_lines(
+    grey: npt.NDArray[np.floating],
+    *,
+    black: bool = True,
+    white: bool = True,
+    min_length: float | None = None,
+    directions: Callable[[int, int], Directions] | None = None,
+    threads: int = 1,
+) -> Lines:
+    """Telling lines of a photo, those of the highest rank first.
+
+    grey: (h, w) 0 black … 1 white. black, white: which lines are looked for. min_length: pixels of the photo.
+    directions: the field at a size of rows × columns, in place of the photo's own.
+    """
+    rows, columns = grey.shape
+    width, height = working_size(columns, rows)
+    picture = resized(np.ascontiguousarray(grey, np.float32), width, height, threads)
+    shortest = SHORTEST if min_length is None else min_length * math.sqrt(width * height / (columns * rows))
+    even = normalised(picture, threads)
+    tone = 1 - blurred(picture, GROUND, threads)
+    if directions is None:
+        cos2, sin2 = field(picture, threads)
+    else:
+        given = directions(height, width)
+        cos2, sin2 = (np.ascontiguousarray(part, np.float32) for part in (given.cos2, given.sin2))
+    fine = oriented.responses(even, *FINE, threads)
+    found: list[_Line] = []
+    if black:
+        strong = blurred(oriented.strongest(fine, 1.0, threads)[0], 16.0, threads)
+        things = spots(picture, threads)
+        inside, about = (covered(things, picture.shape, margin) for margin in BESIDE_SPOT)
+        strokes = _lines(_traced(fine, 1.0, HIGH, tone, cos2, sin2, threads), shortest)
+        strokes = [line for line in strokes if not _within(line.points, inside)]
+        half, tone2, cos, sin = (halved(part, threads) for part in (even, tone, cos2, sin2))
+        coarse = oriented.responses(half, *COARSE, threads)
+        broad = _lines(_traced(coarse, 1.0, HIGH, tone2, cos, sin, threads).doubled(), 2 * shortest)
+        near = _near([line.points for line in strokes if line.rank >= FAR_RANK], picture.shape)
+        found += strokes
+        found += [line for line in broad if _far(line.points, near) and not _within(line.points, about)]
+        found += [_spot_line(spot, strong) for spot in things]
+    if white:
+        light = _traced(fine, -1.0, WHITE_HIGH, 1 - tone, cos2, sin2, threads)
+        lit = _lines(light, shortest)
+        found += [line.made_white() for line, ridge in zip(lit, _ridges(lit, picture)) if ridge >= RIDGE]
+    found = [line for line in found if line.rank >= LEAST_RANK and not _at_rim(line, picture.shape)]
+    found.sort(key=lambda line: -line.rank)
+    return _assembled(found, columns, rows, width, height)
+
+
+@dataclass(frozen=True)
+class _Line:
+    """A line in working pixels (centres at whole numbers): points (k, 3) x, y, response; see Lines for the rest."""
+
+    points: Floats
+    rank: float
+    white: bool = False
+    breadth: float = 0.0
+
+    def made_white(self) -> _Line:
+        return _Line(self.points, self.rank, True, self.breadth)
+
+
+def working_size(width: int, height: int) -> tuple[int, int]:
+    """Width and height that lines are looked for at."""
+    scale = min(SIDE / math.sqrt(width * height), MOST_ENLARGED)
+    return min(max(12, round(width * scale)), LONGEST), min(max(12, round(height * scale)), LONGEST)
+
+
+def resized(grey: Picture, width: int, height: int, threads: int) -> Picture:
+    """The picture (h, w) with that many pixels."""
+    h, w = grey.shape
+    if width <= w and height <= h:
+        return shrunk(grey, width, height, threads=threads)
+    return enlarged(grey, width, height, threads)
+
+
+def halved(values: Picture, threads: int) -> Picture:
+    """Values (h, w) at half the size, rounded up."""
+    h, w = values.shape
+    return shrunk(values, (w + 1) // 2, (h + 1) // 2, threads=threads)
+
+
+def normalised(picture: Picture, threads: int) -> Picture:
+    """The picture less its local mean, its local contrast evened out."""
+    off = picture - blurred(picture, LOCAL, threads)
+    spread = np.sqrt(np.maximum(blurred(off * off, LOCAL, threads), np.float32(0)))
+    gain = np.float32(EVEN) / (spread + np.float32(FLOOR + GRAIN * _grain(picture, threads)))
+    return off * np.clip(gain, np.float32(GAINS[0]), np.float32(GAINS[1]))
+
+
+def _grain(picture: Picture, threads: int) -> float:
+    """The deviation of the noise in the picture's quiet parts."""
+    fine = np.abs(picture - blurred(picture, 1.0, threads)).ravel()
+    k = len(fine) // 5
+    return float(np.partition(fine, k)[k]) / 0.2533  # the fifth of a normal distribution's sizes that are least
+
+
+def field(picture: Picture, threads: int) -> tuple[Picture, Picture]:
+    """cos 2θ and sin 2θ of the direction along which the picture changes least, pooled widely."""
+    soft = blurred(picture, 1.5, threads)
+    gx, gy = np.zeros_like(soft), np.zeros_like(soft)
+    gx[:, 1:-1] = soft[:, 2:] - soft[:, :-2]
+    gy[1:-1] = soft[2:] - soft[:-2]
+    size = np.sqrt(gx * gx + gy * gy) + np.float32(1e-4)  # each place has one voice for each step of grey
+    square, product = (gy * gy - gx * gx) / size, -(gx * gy + gx * gy) / size
+    cos2, sin2 = (blurred(part.astype(np.float32), FIELD, threads) for part in (square, product))
+    length = np.sqrt(cos2 * cos2 + sin2 * sin2) + np.float32(1e-9)
+    return cos2 / length, sin2 / length
+
+
+def _traced(
+    bank: oriented.Bank, sign: float, high: float, ground: Picture, cos2: Picture, sin2: Picture, threads: int
+) -> Traces:
+    """Lines of one sign in a bank."""
+    most, mean = oriented.strongest(bank, sign, threads)
+    # a dot answers in every direction, a line in few
+    factor = np.clip((1 - mean / (most + np.float32(1e-6))) / np.float32(0.35), 0, 1).astype(np.float32)
+    around = np.maximum(blurred(most, 16.0, threads) - blurred(most, 4.0, threads) / np.float32(32), np.float32(0))
+    answers = oriented.weighed(bank, sign, factor, np.float32(2 * INHIBITION) * around, threads)
+    return tracing.traces(answers, high, high * LOW / HIGH, around, ground, cos2, sin2)
+
+
+def _lines(traces: Traces, shortest: float) -> list[_Line]:
+    """Lines long enough, with their ranks."""
+    length = traces.length / PIXELS_PER_PT
+    keep = np.flatnonzero(traces.length >= shortest)
+    n = np.minimum(length, 60.0)
+    contrast = np.minimum(traces.response / FULL, 1.0)
+    bend = traces.turning / np.maximum(length, 1e-6) / 0.25
+    alone = traces.response / (traces.response + 3 * traces.around + 1e-9)
+    salience = np.sqrt(n * np.sqrt(n)) * contrast / (1 + bend * bend) * alone * np.minimum(alone / ALONE, 1.1)
+    along = np.sqrt(np.maximum(0.5 + 0.5 * traces.agreement, 0))
+    clear = np.minimum(contrast * alone / 0.55, 1.0)
+    light = np.clip((0.3 - traces.ground) / 0.1, 0, 1)
+    rank = salience * np.maximum(along, 2 * np.maximum(clear * clear, light))
+    return [_Line(traces[i], float(rank[i])) for i in keep.tolist()]
+
+
+def _ridges(lines: list[_Line], picture: Picture) -> Floats:
+    """By how much each line is lighter than what lies to that side of it which is lighter, on the mean."""
+    if not lines:
+        return np.zeros(0)
+    sizes = np.array([len(line.points) for line in lines])
+    first = np.concatenate([[0], np.cumsum(sizes)[:-1]])
+    at = np.concatenate([line.points[:, :2] for line in lines])
+    whose = np.repeat(np.arange(len(lines)), sizes)
+    before, after = np.arange(len(at)) - 2, np.arange(len(at)) + 2
+    ahead = at[np.minimum(after, (first + sizes - 1)[whose])] - at[np.maximum(before, first[whose])]
+    length = np.sqrt(ahead[:, 0] * ahead[:, 0] + ahead[:, 1] * ahead[:, 1]) + 1e-9
+    normal = np.column_stack([-ahead[:, 1], ahead[:, 0]]) * (BESIDE / length)[:, None]
+    beside = np.maximum(_at(picture, at + normal), _at(picture, at - normal))
+    off = (_at(picture, at) - beside).astype(np.float64)
+    return np.asarray(np.add.reduceat(off, first) / sizes)
+
+
+def _spot_line(spot: Spot, strong: Picture) -> _Line:
+    """A spot as a line: of one point where it is round. strong: (h, w) how much of lines there is around each place."""
+    ends = [(spot.x, spot.y, FULL)]
+    rank = SPOT * spot.contrast * spot.contrast * spot.contrast
+    if spot.dx or spot.dy:
+        ends = [(spot.x - spot.dx, spot.y - spot.dy, FULL), (spot.x + spot.dx, spot.y + spot.dy, FULL)]
+        rank *= LONG_SPOT
+    points = np.array(ends)
+    calm = min(1.0, CALM / max(float(_at(strong, points)[0]), 1e-9))
+    return _Line(points, rank * calm * calm, False, spot.breadth)
+
+
+def _at(values: npt.NDArray[np.generic], points: Floats) -> npt.NDArray[np.generic]:
+    """Values (h, w) at the pixels that points (k, ≥ 2) lie in."""
+    x = np.clip((points[:, 0] + 0.5).astype(np.int64), 0, values.shape[1] - 1)
+    y = np.clip((points[:, 1] + 0.5).astype(np.int64), 0, values.shape[0] - 1)
+    return values[y, x]
+
+
+def _within(points: Floats, inside: Picture) -> bool:
+    """Whether a line is no more than a part of a spot, or of its outline."""
+    there = _at(inside, points)
+    n = np.count_nonzero(there)
+    return bool(2 * n > len(points) and len(points) < AROUND * float(there.max()))
+
+
+def _near(lines: list[Floats], shape: tuple[int, ...]) -> npt.NDArray[np.bool_]:
+    """(h, w) what is near to a line."""
+    mask = np.zeros(shape, np.bool_)
+    for points in lines:
+        x = np.clip((points[:, 0] + 0.5).astype(np.int64), 0, shape[1] - 1)
+        y = np.clip((points[:, 1] + 0.5).astype(np.int64), 0, shape[0] - 1)
+        mask[y, x] = True
+    r = int(NEAR)
+    for axis in (0, 1):
+        padded = np.pad(mask, [(r, r) if a == axis else (0, 0) for a in (0, 1)])
+        n = mask.shape[axis]
+        wide = mask.copy()
+        for k in range(2 * r + 1):
+            wide |= padded[k : k + n] if axis == 0 else padded[:, k : k + n]
+        mask = wide
+    return mask
+
+
+def _far(points: Floats, near: npt.NDArray[np.bool_]) -> bool:
+    return bool(np.count_nonzero(_at(near, points)) <= (1 - FAR) * len(points))
+
+
+def _at_rim(line: _Line, shape: tuple[int, ...]) -> bool:
+    x, y = line.points[:, 0], line.points[:, 1]
+    off = np.minimum(np.minimum(x, shape[1] - 1 - x), np.minimum(y, shape[0] - 1 - y))
+    return bool(off.max() <= RIM)
+
+
+def _thinned(points: Floats) -> Floats:
+    """About one point every STEP, the first and the last among them."""
+    if len(points) < 3:
+        return points
+    count = max(2, math.ceil((len(points) - 1) / STEP) + 1)
+    at = [(len(points) - 1) * k // (count - 1) for k in range(count)]
+    return points[at]
+
+
+def _assembled(found: list[_Line], columns: int, rows: int, width: int, height: int) -> Lines:
+    """The lines in pixels of the photo."""
+    parts = [_thinned(line.points) for line in found]
+    first = np.zeros(len(parts) + 1, np.int64)
+    np.cumsum([len(part) for part in parts], out=first[1:])
+    points = np.concatenate(parts) if parts else np.zeros((0, 3))
+    scale = np.array([columns / width, rows / height])
+    at = np.clip((points[:, :2] + 0.5) * scale, 0, (columns, rows))
+    return Lines(
+        columns, rows, at, first, np.clip(points[:, 2] / FULL, 0, 1), np.array([line.rank for line in found]),
+        np.array([line.white for line in found], np.bool_),
+        np.array([line.breadth for line in found]) * math.sqrt(float(scale[0] * scale[1])),
+    )  # fmt: skip

@@ -1,0 +1,96 @@
+"""A bank of oriented filters: how much each place of a picture looks like a piece of a dark, or light, line.
+
+An elongated difference of Gaussians in each of N directions: a narrow one less one 1.6 times as wide across, which is
+near the negative second derivative across and a low-pass along. Dark lines answer with positive numbers, light ones
+with negative ones.
+
+This module alone imports the compiled kernel `oriented`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from functools import cache
+
+import numpy as np
+import numpy.typing as npt
+
+from penink_cli.ground import threads as threading
+from penink_cli.ground.model import Floats
+from penink_cli.lines._compiled import oriented
+
+Picture = npt.NDArray[np.float32]
+Bank = npt.NDArray[np.float32]  # (directions, h, w)
+
+DIRECTIONS = 24  # in half a turn, 7.5° apart
+WIDER = 1.6  # the second Gaussian across
+CUT = 0.012  # taps below this part of the greatest are left away
+_BAND = 32  # rows of a task
+
+
+def units(parts: int) -> Floats:
+    """(parts, 2) unit vectors x, y of that many directions in a whole turn, the same on every machine."""
+    turns = (2 * math.pi * k / parts for k in range(parts))
+    return np.array([(round(math.cos(a), 12), round(math.sin(a), 12)) for a in turns])
+
+
+def responses(picture: Picture, across: float, along: float, threads: int) -> Bank:
+    """(DIRECTIONS, h, w) responses to the picture (h, w), which is mirrored in its frame.
+
+    across, along: σ of the narrow Gaussian, pixels. The response to an ideal line of that σ is a fifth of its contrast.
+    """
+    h, w = picture.shape
+    r = math.ceil(3 * max(WIDER * across, along))
+    padded = np.ascontiguousarray(np.pad(picture, r, mode="symmetric"))
+    out = np.empty((DIRECTIONS, h, w), np.float32)
+    tasks: list[Callable[[], object]] = []
+    for k, (x, y) in enumerate(units(2 * DIRECTIONS)[:DIRECTIONS].tolist()):
+        down, right, weight = _taps(across, along, r, x, y)
+
+        def work(top: int, bottom: int, k: int = k, down=down, right=right, weight=weight) -> None:  # type: ignore[no-untyped-def]
+            oriented.respond(padded, down, right, weight, out[k], top, bottom)
+
+        tasks += threading.ranges(work, h, 4 * _BAND)
+    threading.share(tasks, threads)
+    return out
+
+
+@cache
+def _taps(
+    across: float, along: float, r: int, x: float, y: float
+) -> tuple[npt.NDArray[np.int32], npt.NDArray[np.int32], npt.NDArray[np.float32]]:
+    """Rows and columns from the window's corner, and weights, of a filter along (x, y): as many as a multiple of 4."""
+    taps = []
+    for i in range(-r, r + 1):
+        for j in range(-r, r + 1):
+            u, v = j * x + i * y, i * x - j * y
+            low = math.exp(-0.5 * (u / along) ** 2)
+            wide = low * math.exp(-0.5 * (v / (WIDER * across)) ** 2)
+            if wide > CUT:
+                taps.append((i + r, j + r, low * math.exp(-0.5 * (v / across) ** 2), wide))
+    a, b = math.fsum(t[2] for t in taps), math.fsum(t[3] for t in taps)
+    weights = [round(t[3] / b - t[2] / a, 9) for t in taps]
+    weights[len(taps) // 2] -= math.fsum(weights)  # even ground answers with nothing
+    spare = -len(taps) % 4
+    rows = np.array([t[0] for t in taps] + [r] * spare, np.int32)
+    columns = np.array([t[1] for t in taps] + [r] * spare, np.int32)
+    return rows, columns, np.array(weights + [0.0] * spare, np.float32)
+
+
+def strongest(bank: Bank, sign: float, threads: int) -> tuple[Picture, Picture]:
+    """The greatest response of this sign in any direction (h, w), and the mean of those of all directions."""
+    _, h, w = bank.shape
+    most, mean = np.empty((h, w), np.float32), np.empty((h, w), np.float32)
+    work = threading.ranges(lambda top, bottom: oriented.strongest(bank, sign, most, mean, top, bottom), h, _BAND)
+    threading.share(work, threads)
+    return most, mean
+
+
+def weighed(bank: Bank, sign: float, factor: Picture, less: Picture, threads: int) -> Bank:
+    """Responses of this sign × factor (h, w) − less (h, w), or 0."""
+    out = np.empty_like(bank)
+    h = bank.shape[1]
+    work = threading.ranges(lambda top, bottom: oriented.weighed(bank, sign, factor, less, out, top, bottom), h, _BAND)
+    threading.share(work, threads)
+    return out

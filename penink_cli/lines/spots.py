@@ -1,0 +1,165 @@
+"""Small dark things that are no lines: pupils, nostrils, beads, full stops.
+
+Centres are extrema of a difference of Gaussians in place and scale (Lowe 2004, section 3); what hangs together around
+one and is darker than half way to its surroundings is the thing, and its second moments tell how broad and long it is.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from scipy import ndimage
+
+from penink_cli.composition.filters import blurred
+from penink_cli.ground.model import Floats
+from penink_cli.lines.oriented import Picture
+
+FINEST, RATIO, SCALES = 1.1, 1.4, 7  # σ of the narrowest Gaussian, pixels; from one to the next; differences of them
+DISC = 0.243  # what such a difference answers to a disc of contrast 1 and the radius it fits best
+FITS = 1.66  # that radius, in σ of its narrower Gaussian
+CONTRAST = 0.2  # least grey step of a spot
+LONGEST = 2.3  # times as long as broad
+FILLED = 0.82  # the part of its ellipse that it covers
+OPEN = 0.06  # the part of its surroundings that may be as dark
+#: What is thinner than this part of its radius may hang on to it, as lashes do, from a radius of so many pixels on and
+#: around so much of it.
+THICK, LEAST_ATTACHED, ATTACHED = 0.5, 3.0, 0.4
+HOLLOW = 0.2  # the part of it that may be light, as an eye's catchlight is
+CRISP = 0.35  # the part of its contrast that its border, two pixels wide to each side, makes up
+MOST = 600  # candidates looked at, those of the highest contrast
+
+
+@dataclass(frozen=True)
+class Spot:
+    """A small dark thing.
+
+    x, y: its middle, pixel centres at whole numbers. dx, dy: from there to the middle of its rounded end. breadth:
+    pixels. contrast: grey step to its surroundings.
+    """
+
+    x: float
+    y: float
+    dx: float
+    dy: float
+    breadth: float
+    contrast: float
+
+
+def spots(picture: Picture, threads: int) -> list[Spot]:
+    """Dark spots of a picture (h, w), those of the highest contrast first; none overlaps another."""
+    blurs = [blurred(picture, FINEST * RATIO**k, threads) for k in range(SCALES + 1)]
+    steps = [wide - narrow for narrow, wide in pairwise(blurs)]
+    candidates: list[tuple[float, int, int, int]] = []
+    for k, step in enumerate(steps):
+        for i, j in _maxima(steps, k, np.float32(CONTRAST * DISC)):
+            candidates.append((-float(step[i, j]), k, i, j))
+    candidates.sort()
+    taken = np.zeros(picture.shape, np.bool_)
+    found = []
+    for _, k, i, j in candidates[:MOST]:
+        if not taken[i, j] and (spot := _spot(blurs[0], taken, i, j, FITS * FINEST * RATIO**k)):
+            found.append(spot)
+    return found
+
+
+def _maxima(steps: list[Picture], k: int, least: np.float32) -> list[tuple[int, int]]:
+    """Where a difference reaches `least` and is greater than around it in place and scale."""
+    step = steps[k]
+    h, w = step.shape
+    rows, columns = np.nonzero(step >= least)
+    inside = (rows > 1) & (columns > 1) & (rows < h - 2) & (columns < w - 2)
+    rows, columns = rows[inside], columns[inside]
+    for other in steps[max(0, k - 1) : k + 2]:
+        for di in (-1, 0, 1):
+            for dj in (-1, 0, 1):
+                if other is step and not di and not dj:
+                    continue
+                value, beside = step[rows, columns], other[rows + di, columns + dj]
+                # of equals the first one
+                keep = value > beside if (di, dj) > (0, 0) or other is not step else value >= beside
+                rows, columns = rows[keep], columns[keep]
+    return list(zip(rows.tolist(), columns.tolist()))
+
+
+def _spot(picture: Picture, taken: np.ndarray, i: int, j: int, radius: float) -> Spot | None:
+    """What lies around (i, j), of about that radius, if it is a spot; its place is then taken."""
+    r = math.ceil(2.8 * radius) + 1
+    top, left = max(0, i - r), max(0, j - r)
+    window = picture[top : i + r + 1, left : j + r + 1]
+    y, x = np.ogrid[top : top + window.shape[0], left : left + window.shape[1]]
+    away = (y - i) ** 2 + (x - j) ** 2
+    ring = np.sort(window[(away >= (2.0 * radius) ** 2) & (away <= (2.7 * radius) ** 2)])
+    if len(ring) < 8:
+        return None
+    core = float(picture[i - 1 : i + 2, j - 1 : j + 2].min())
+    ground = float(ring[len(ring) // 2])
+    contrast = ground - core
+    if contrast < CONTRAST:
+        return None
+    rim = (away >= (2.0 * radius) ** 2) & (away <= (2.7 * radius) ** 2)
+    bare = window < core + 0.5 * contrast
+    if np.count_nonzero(bare & rim) > (ATTACHED if radius >= LEAST_ATTACHED else OPEN) * len(ring):
+        return None
+    dark = ndimage.binary_fill_holes(bare)  # a catchlight is part of the pupil
+    thick = ndimage.binary_opening(dark, _disc(max(1.0, THICK * radius)))
+    part, _ = ndimage.label(thick)
+    mine = part == part[i - top, j - left]
+    if not part[i - top, j - left] or (mine & taken[top : i + r + 1, left : j + r + 1]).any():
+        return None
+    if (thick & rim).any() or np.count_nonzero(mine & ~bare) > HOLLOW * np.count_nonzero(mine):
+        return None
+    outer = ndimage.binary_dilation(mine, iterations=3) & ~ndimage.binary_dilation(mine, iterations=2) & ~dark
+    inner = mine & ~ndimage.binary_erosion(mine, border_value=1)
+    if not outer.any() or _mean(window[outer]) - _mean(window[inner]) < CRISP * contrast:
+        return None
+    rows, columns = np.nonzero(mine)
+    n = len(rows)
+    # whole numbers: exact sums in any order
+    my, mx = int(rows.sum()), int(columns.sum())
+    yy = int((rows * rows).sum()) / n - (my / n) ** 2 + 1 / 12
+    xx = int((columns * columns).sum()) / n - (mx / n) ** 2 + 1 / 12
+    xy = int((rows * columns).sum()) / n - my * mx / n / n
+    root = math.sqrt((xx - yy) ** 2 + 4 * xy * xy)
+    major, minor = math.sqrt((xx + yy + root) / 2), math.sqrt(max((xx + yy - root) / 2, 1 / 12))
+    if major > LONGEST * minor or n < FILLED * 4 * math.pi * major * minor:
+        return None
+    taken[top : i + r + 1, left : j + r + 1] |= mine
+    middle = left + mx / n, top + my / n
+    if major < 1.3 * minor:
+        return Spot(*middle, 0.0, 0.0, 2 * math.sqrt(n / math.pi), contrast)
+    ex, ey = (xx - yy + root, 2 * xy) if xx > yy else (2 * xy, yy - xx + root)
+    size = 2 * (major - minor) / math.sqrt(ex * ex + ey * ey)
+    return Spot(*middle, ex * size, ey * size, 4 * minor, contrast)
+
+
+def _disc(radius: float) -> np.ndarray:
+    r = math.floor(radius)
+    y, x = np.ogrid[-r : r + 1, -r : r + 1]
+    return np.asarray(x * x + y * y <= radius * radius)
+
+
+def _mean(values: np.ndarray) -> float:
+    return math.fsum(values.tolist()) / max(len(values), 1)
+
+
+def covered(spots: list[Spot], shape: tuple[int, ...], margin: float) -> np.ndarray:
+    """(h, w) how long the spot is that lies there, the margin around it included; 0 for none."""
+    out = np.zeros(shape, np.float32)
+    for spot in spots:
+        half = math.sqrt(spot.dx * spot.dx + spot.dy * spot.dy)
+        r = spot.breadth / 2 + margin
+        reach = math.ceil(half + r)
+        i, j = round(spot.y), round(spot.x)
+        top, left = max(0, i - reach), max(0, j - reach)
+        window = out[top : i + reach + 1, left : j + reach + 1]
+        y, x = np.ogrid[top : top + window.shape[0], left : left + window.shape[1]]
+        near: Floats = (x - spot.x) ** 2 + (y - spot.y) ** 2
+        if half:
+            along = ((x - spot.x) * spot.dx + (y - spot.y) * spot.dy) / half
+            along = np.clip(along, -half, half)
+            near = (x - spot.x - along * spot.dx / half) ** 2 + (y - spot.y - along * spot.dy / half) ** 2
+        window[near <= r * r] = 2 * (r + half)
+    return out

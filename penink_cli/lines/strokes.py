@@ -1,0 +1,84 @@
+"""Telling lines as pen strokes for one size on paper, swelling and tapered."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from penink_cli.ground.model import Floats, Lines, Strokes
+from penink_cli.lines.choice import LineChoice, chosen, lengths
+
+#: Distance of knots; detail finer than SMOOTH is smoothed away.
+KNOT_PT, SMOOTH_PT = 3.0, 0.6
+#: The finest line a pen draws, in parts of its broadest; tips taper over so many points to this part.
+FINEST, TIP_PT, TIP = 0.25, 12.0, 0.45
+
+
+def line_strokes(lines: Lines, width_pt: float, height_pt: float, choice: LineChoice) -> Strokes:
+    """Strokes of the dark lines, the most telling first, on a sheet of width_pt × height_pt."""
+    scale = np.array([width_pt / lines.width, height_pt / lines.height])
+    chains: list[Floats] = []
+    widths: list[Floats | float] = []
+    for i in chosen(lines, width_pt, height_pt, choice).tolist():
+        points, weight = lines[i] * scale, lines.weight[lines.first[i] : lines.first[i + 1]]
+        if lines.breadth[i] > 0:
+            breadth = float(lines.breadth[i]) * math.sqrt(float(scale[0] * scale[1]))
+            chains.append(points if len(points) == 1 else _curve(points, False))
+            widths.append(choice.pen_pt if choice.even else max(breadth, FINEST * choice.pen_pt))
+            continue
+        knots, pressed, ring = _knots(points, weight)
+        chains.append(_curve(knots, ring))
+        widths.append(choice.pen_pt if choice.even else _widths(knots, pressed, ring, choice.pen_pt))
+    return Strokes.of(width_pt, height_pt, chains, widths)
+
+
+def _knots(points: Floats, weight: Floats) -> tuple[Floats, Floats, bool]:
+    """Knots (k, 2) of a smooth curve along the points, the weight at each, and whether it closes."""
+    steps = lengths(points)
+    run = np.concatenate([[0.0], np.cumsum(steps)])
+    spacing = float(run[-1]) / len(steps)
+    gap = points[0] - points[-1]
+    ring = len(points) > 7 and math.sqrt(float(gap[0] * gap[0] + gap[1] * gap[1])) < 1.5 * spacing
+    if ring:
+        points = np.concatenate([points[:-1], points[:1]])
+    smooth = points
+    for _ in range(min(40, round(2 * (SMOOTH_PT / spacing) ** 2))):
+        inner = (smooth[:-2] + 2 * smooth[1:-1] + smooth[2:]) / 4
+        ends = (smooth[-2:-1] + 2 * smooth[:1] + smooth[1:2]) / 4 if ring else smooth[:1]
+        smooth = np.concatenate([ends, inner, ends if ring else smooth[-1:]])
+    count = max(1, math.ceil(run[-1] / max(KNOT_PT, spacing)))
+    at = np.arange(count + 1) * (run[-1] / count)
+    x, y, w = (np.interp(at, run, values) for values in (smooth[:, 0], smooth[:, 1], weight))
+    return np.column_stack([x, y]), w, ring and count > 2
+
+
+def _curve(knots: Floats, ring: bool) -> Floats:
+    """Control points of a curve through the knots, each tangent that of the parabola through its neighbours."""
+    if len(knots) == 2:
+        step = (knots[1] - knots[0]) / 3
+        return np.stack([knots[0], knots[0] + step, knots[1] - step, knots[1]])
+    steps = knots[1:] - knots[:-1]
+    size = np.maximum(lengths(knots), 1e-9)[:, None]
+    slope = steps / size
+    if ring:
+        around, sizes = np.concatenate([slope[-1:], slope]), np.concatenate([size[-1:], size])
+        inner = (around[:-1] * sizes[1:] + around[1:] * sizes[:-1]) / (sizes[1:] + sizes[:-1])
+        tangent = np.concatenate([inner, inner[:1]])
+    else:
+        inner = (slope[:-1] * size[1:] + slope[1:] * size[:-1]) / (size[1:] + size[:-1])
+        tangent = np.concatenate([2 * slope[:1] - inner[:1], inner, 2 * slope[-1:] - inner[-1:]])
+    leaving, arriving = knots[:-1] + tangent[:-1] * size / 3, knots[1:] - tangent[1:] * size / 3
+    return np.concatenate([knots[:1], np.stack([leaving, arriving, knots[1:]], axis=1).reshape(-1, 2)])
+
+
+def _widths(knots: Floats, weight: Floats, ring: bool, pen_pt: float) -> Floats:
+    """The width at each knot: as the line is weighed, finer towards its tips, and finer all along where it is short."""
+    run = np.concatenate([[0.0], np.cumsum(lengths(knots))])
+    length = float(run[-1])
+    tip = np.ones(len(knots))
+    if not ring:
+        tip = np.clip(np.minimum(run, length - run) / min(TIP_PT, max(length / 2, 1e-9)), 0, 1)
+        tip = TIP + (1 - TIP) * tip * (2 - tip)
+    full = FINEST + (1 - FINEST) * weight
+    return np.asarray(pen_pt * np.maximum(full * tip * (0.8 + 0.2 * min(1.0, length / 40.0)), 0.7 * FINEST))

@@ -1,0 +1,106 @@
+"""Telling lines as strokes: chosen by rank, with room around each, as wide as they weigh."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from penink_cli.ground.model import Lines
+from penink_cli.lines.choice import LineChoice, chosen, least_rank
+from penink_cli.lines.strokes import line_strokes
+
+
+def listed(*lines: tuple, width: int = 400, height: int = 300) -> Lines:
+    """Lines from (points, rank) or (points, rank, members)."""
+    points = [np.array(line[0], float) for line in lines]
+    more = [line[2] if len(line) > 2 else {} for line in lines]
+    first = np.concatenate([[0], np.cumsum([len(p) for p in points])]).astype(np.int64)
+    return Lines(
+        width, height, np.concatenate(points), first,
+        np.concatenate([np.broadcast_to(m.get("weight", 1.0), len(p)) for m, p in zip(more, points)]),
+        np.array([line[1] for line in lines], float), np.array([m.get("white", False) for m in more]),
+        np.array([m.get("breadth", 0.0) for m in more], float),
+    )  # fmt: skip
+
+
+def straight(y: float, x: float = 20, to: float = 380) -> np.ndarray:
+    xs = np.linspace(x, to, 91)
+    return np.column_stack([xs, np.full(91, float(y))])
+
+
+def test_the_most_telling_come_first_and_white_ones_not():
+    lines = listed((straight(50), 2), (straight(150), 5), (straight(250), 9, {"white": True}), (straight(290), 3))
+    assert chosen(lines, 432, 324, LineChoice()).tolist() == [1, 3, 0]
+    assert chosen(lines, 432, 324, LineChoice(), white=True).tolist() == [2]
+    assert len(line_strokes(lines, 432, 324, LineChoice())) == 3
+
+
+def test_there_is_room_for_more_lines_on_a_larger_sheet():
+    lines = listed(*((straight(100 + 2.5 * k), 3 - 0.05 * k) for k in range(40)))
+    counts = [len(chosen(lines, w, 0.75 * w, LineChoice(per_inch2=50))) for w in (144, 432, 1728)]
+    assert counts[0] < counts[1] < counts[2] <= 40
+    dense, sparse = (len(chosen(lines, 432, 324, LineChoice(density=d, per_inch2=50))) for d in (0.3, 0.06))
+    assert sparse < counts[1] < dense
+
+
+@pytest.mark.parametrize("per_inch2", [0.5, 1, 2])
+def test_ink_is_bounded_by_the_square_inch(per_inch2):
+    lines = listed(*((straight(5 + 5 * k), 3) for k in range(55)))
+    drawn = line_strokes(lines, 432, 324, LineChoice(per_inch2=per_inch2, density=9))
+    assert 0 < 388.8 / 72 * len(drawn) <= per_inch2 * 6 * 4.5
+
+
+def test_small_prints_take_higher_ranks_unless_told():
+    assert least_rank(72, 72) > least_rank(432, 432) > least_rank(1728, 1728)
+    lines = listed((straight(100), 0.9))
+    assert len(chosen(lines, 72, 54, LineChoice())) == 0
+    assert len(chosen(lines, 72, 54, LineChoice(min_rank=0.5))) == 1
+    assert len(chosen(listed((straight(100, 20, 30), 9)), 72, 54, LineChoice())) == 0  # 1.8 pt long
+
+
+def test_strokes_lie_on_the_line_whatever_the_size():
+    t = np.linspace(0, 1.8 * np.pi, 80)
+    arc = np.column_stack([200 + 90 * np.cos(t), 150 + 90 * np.sin(t)])
+    for width in (144, 432, 1728):
+        strokes = line_strokes(listed((arc, 9)), width, 0.75 * width, LineChoice())
+        control, scale = strokes[0], width / 400
+        s = np.linspace(0, 1, 9)[:, None]
+        for a, b, c, d in (control[k : k + 4] for k in range(0, len(control) - 1, 3)):
+            p = (1 - s) ** 3 * a + 3 * s * (1 - s) ** 2 * b + 3 * s * s * (1 - s) * c + s**3 * d
+            assert np.abs(np.hypot(*(p / scale - (200, 150)).T) - 90).max() * scale < 0.35
+        assert np.allclose(control[0], arc[0] * scale) and np.allclose(control[-1], arc[-1] * scale)
+
+
+def test_strokes_swell_with_the_weight_and_taper_at_both_tips():
+    weight = np.linspace(0.2, 1, 91)
+    strokes = line_strokes(listed((straight(100), 9, {"weight": weight})), 432, 324, LineChoice(pen_pt=2))
+    widths = strokes.knot_widths
+    assert widths is not None and widths.max() <= 2
+    middle = widths[10:-10]
+    assert (np.diff(middle) > 0).all() and widths[0] < 0.8 * middle[0] and widths[-1] < 0.6 * middle[-1]
+    even = line_strokes(listed((straight(100), 9)), 432, 324, LineChoice(pen_pt=2, even=True))
+    assert even.widths.tolist() == [2] and even.knot_widths is None
+
+
+def test_a_ring_is_closed_smooth_and_does_not_taper():
+    t = np.linspace(0, 2 * np.pi, 60)
+    ring = np.column_stack([200 + 60 * np.cos(t), 150 + 60 * np.sin(t)])
+    ring[-1] += (0.3, 0.1)
+    strokes = line_strokes(listed((ring, 9)), 432, 324, LineChoice(pen_pt=1))
+    control = strokes[0]
+    assert np.allclose(control[0], control[-1])
+    begin, end = control[1] - control[0], control[-1] - control[-2]
+    assert begin @ end > 0.99 * np.hypot(*begin) * np.hypot(*end)
+    assert strokes.knot_widths is not None and np.ptp(strokes.knot_widths) < 1e-9
+
+
+def test_spots_are_as_broad_as_they_are():
+    lines = listed(
+        ([[100, 100]], 2, {"breadth": 8}),
+        ([[200, 100], [210, 104]], 2, {"breadth": 5}),
+        ([[5, 5]], 2, {"breadth": 0.3}),
+    )
+    strokes = line_strokes(lines, 800, 600, LineChoice())
+    assert [len(strokes[i]) for i in range(len(strokes))] == [1, 4, 1]
+    assert strokes.widths.tolist() == pytest.approx([16, 10, 0.6])
+    assert len(line_strokes(lines, 400, 300, LineChoice())) == 2  # the third is too fine by then
