@@ -44,6 +44,9 @@ def seeds(reader: str) -> Iterator[bytes]:
             out = io.BytesIO()
             (picture.convert("RGB") if kind == "JPEG" else picture).save(out, kind)
             yield out.getvalue()
+        from tests.formats.photo_cases import cases
+
+        yield from (case.data for case in cases() if len(case.data) < 4096)
     if reader == "directions":
         yield encoded(directions.write, Directions(np.full((2, 3), 0.6), np.full((2, 3), -0.8), np.full((2, 3), 0.5)))
     if reader == "edges":

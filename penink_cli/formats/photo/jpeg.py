@@ -58,6 +58,7 @@ class _File:
     icc: dict[int, bytes] = field(default_factory=dict)
     icc_parts: int = 0
     exif: bytes | None = None
+    lost: bool = False  # codes are missing or wrong, which has been said
 
     @property
     def most(self) -> tuple[int, int]:
@@ -83,7 +84,9 @@ def read(encoded: bytes, max_pixels: int, verdict: Verdict) -> Decoded:
     except (IndexError, ValueError):
         raise FormatError("damaged JPEG photograph: a segment makes no sense") from None
     if at is None:
-        if found.frame in UNCHECKED or not found.complete():
+        if found.lost:
+            pass
+        elif found.frame in UNCHECKED or not found.complete():
             _lost(FormatError(f"truncated: the JPEG ends after {len(encoded)} bytes"), found, verdict)
         else:
             verdict.scar("the JPEG has no end marker; all its scans are whole")
@@ -98,7 +101,9 @@ def read(encoded: bytes, max_pixels: int, verdict: Verdict) -> Decoded:
 def _lost(error: FormatError, found: _File, verdict: Verdict) -> None:
     if not found.begun() and not found.clean:
         raise error
-    verdict.damage(error)
+    if not found.lost:
+        verdict.damage(error)
+        found.lost = True
 
 
 def _walk(encoded: bytes, found: _File, max_pixels: int, verdict: Verdict) -> int | None:
@@ -125,7 +130,7 @@ def _walk(encoded: bytes, found: _File, max_pixels: int, verdict: Verdict) -> in
         content = encoded[at + 4 : end]
         if marker == 0xDA:
             start, at = at, _scan(encoded, end, content, found, verdict)
-            found.clean.append(encoded[start:at])
+            found.clean.append(encoded[start : at if at >= 0 else None])
             if at < 0:
                 return None
             continue

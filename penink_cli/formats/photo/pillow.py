@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from PIL import Image
 
 SHOWN = {"WEBP": "WebP"}
+RUN = 1 << 12  # pixels that a byte of a squeezed BMP, or of a GIF, can make at the most, and some
 
 
 @contextlib.contextmanager
@@ -80,6 +81,8 @@ def read(encoded: bytes, kind: str, max_pixels: int, verdict: Verdict) -> Decode
     with errors(kind):
         image = _opened(encoded, kind)
         check_size(*image.size, max_pixels)
+        if kind == "BMP":
+            _check_bitmap(encoded, *image.size, verdict)
         _load(image, kind, verdict)
         picture = of_image(image)
         if _has_more(image):
@@ -89,6 +92,16 @@ def read(encoded: bytes, kind: str, max_pixels: int, verdict: Verdict) -> Decode
         profile_of(image.info.get("icc_profile"), picture.channels < 3, verdict),
         orientation(image.info.get("exif")),
     )
+
+
+def _check_bitmap(encoded: bytes, width: int, height: int, verdict: Verdict) -> None:
+    """Raise FormatError where a BMP has fewer bytes than its rows need, before room is made for these."""
+    old = encoded[14] == 12
+    bits = int.from_bytes(encoded[24:26] if old else encoded[28:30], "little")
+    squeezed = not old and int.from_bytes(encoded[30:34], "little") in (1, 2)
+    needed = width * height // RUN if squeezed else (width * bits + 31) // 32 * 4 * height
+    if len(encoded) < needed:
+        verdict.damage(FormatError(f"truncated: {len(encoded)} of at least {needed} BMP bytes"))
 
 
 def _has_more(image: Image.Image) -> bool:
