@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
 SHOWN = {"WEBP": "WebP"}
 RUN = 1 << 12  # pixels that a byte of a squeezed BMP, or of a GIF, can make at the most, and some
+PART = 16  # of a BMP at least one in so many bytes must be there for its rest to be read
 
 
 @contextlib.contextmanager
@@ -101,7 +102,10 @@ def _check_bitmap(encoded: bytes, width: int, height: int, verdict: Verdict) -> 
     squeezed = not old and int.from_bytes(encoded[30:34], "little") in (1, 2)
     needed = width * height // RUN if squeezed else (width * bits + 31) // 32 * 4 * height
     if len(encoded) < needed:
-        verdict.damage(FormatError(f"truncated: {len(encoded)} of at least {needed} BMP bytes"))
+        error = FormatError(f"truncated: {len(encoded)} of at least {needed} BMP bytes")
+        if squeezed or PART * len(encoded) < needed:
+            raise error
+        verdict.damage(error)
 
 
 def _has_more(image: Image.Image) -> bool:
