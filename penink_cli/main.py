@@ -32,6 +32,8 @@ SUBCOMMANDS = {
     "detect-lines": ("detect_lines", "Find the telling lines of a photograph."),
     "extract-samples": ("extract_samples", "Take grey samples that no edge has contaminated."),
     "show-edges": ("show_edges", "Draw a photograph with its edges, for people to look at."),
+    "detect-directions": ("detect_directions", "Find the directions that strokes are to follow in a photograph."),
+    "show-directions": ("show_directions", "Draw a photograph with its directions, for people to look at."),
     "reduce": ("reduce", "Reduce samples to a coarser grid without mixing across edges."),
     "enlarge": ("enlarge", "Reconstruct the image at any size, sharp across edges and smooth elsewhere."),
     "blast": ("blast", "Turn grey into pen strokes of the same tone."),

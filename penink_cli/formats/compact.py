@@ -7,16 +7,20 @@ first, the eighth set on all but the last), then one stretch of the adaptive cod
 ``PIs1``   width, height, maxval                      samples, row by row, by their neighbours
 ``PIe1``   W, H, grid columns, grid rows, number of   chains: where each starts, then one step
            edges, 1 where strengths follow else 0     after the other
+``PId1``   columns, rows                              directions: angles row by row, then confidence
 ``PIt1``   number of bytes                            a text, byte by byte
 =========  =========================================  ==========================================
 
 Vertices lie on a grid of columns × rows cells that spans the edge list's frame W × H: the point (a, b) is
 x = a·W / columns, y = b·H / rows. The grid has `GRID` points to the sample spacing, which costs at most
 0.1 dB against exact edges. Strengths are kept in sixteenths.
+
+Directions are kept as ANGLES angles of a half turn, 3.75° apart, and as confidence in sevenths, one for 4 × 4 samples.
 """
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -26,12 +30,16 @@ from penink_cli.formats import edge_list
 from penink_cli.formats._compiled.compact import Coder
 from penink_cli.geometry.trails import trails
 from penink_cli.ground.errors import FormatError, LimitError
-from penink_cli.ground.model import EdgeList, GreyImage, Ints
+from penink_cli.ground.model import Directions, EdgeList, Floats, GreyImage, Ints
 
-SAMPLES, EDGES, TEXT = b"PIs1", b"PIe1", b"PIt1"
+SAMPLES, EDGES, DIRECTIONS, TEXT = b"PIs1", b"PIe1", b"PId1", b"PIt1"
 
 GRID = 16  # points of the edges' grid to the sample spacing
 STRENGTHS = 16  # steps of strength
+ANGLES = 48  # of a half turn: 0°, 45° and 90° are among them
+SURE = 7  # the highest level of confidence
+BLOCK = 4  # samples along a side that share one
+MAX_FIELD = 1 << 20  # samples of a direction field
 MAX_GRID = 1 << 24  # points along a side
 # Decoding takes 0.6 µs a sample where all is paper, 8 µs a byte of text and up to 25 µs a byte of code: with these
 # limits at most 10, 9 and some 20 seconds a member.
@@ -39,8 +47,8 @@ MAX_SAMPLES = 1 << 24
 MAX_TEXT = 1 << 20
 MAX_CODE = 1 << 20
 
-# Kinds of numbers in a list of edges; each has statistics of its own.
-_CHAIN, _DOWN, _ALONG, _STEP, _BACK, _MAIN, _ASIDE, _STRENGTH = range(8)
+# Kinds of numbers; each has statistics of its own.
+_CHAIN, _DOWN, _ALONG, _STEP, _BACK, _MAIN, _ASIDE, _STRENGTH, _TURN = range(9)
 # What a step along a chain leads to.
 _NEW, _END, _START, _OLD = range(4)
 
@@ -106,6 +114,110 @@ def text_from(data: bytes) -> bytes:
     coder.text(values)
     _check_end(coder)
     return values.tobytes()
+
+
+# --------------------------------------------------------------------------- directions
+
+
+def _angles() -> Floats:
+    """(ANGLES, 2) the double-angle vectors of the angles that are kept."""
+    double = [2 * math.pi * k / ANGLES for k in range(ANGLES)]
+    return np.array([(round(math.cos(a), 12), round(math.sin(a), 12)) for a in double])
+
+
+def directions_bytes(field: Directions) -> bytes:
+    """A direction field, each sample at the nearest of the angles and levels that are kept. Raises LimitError."""
+    rows, columns = field.cos2.shape
+    _check_field(columns, rows)
+    angles = _angles()
+    nearest = np.empty((rows, columns), np.int64)
+    for i in range(rows):  # where nothing is known, both 0, it is the first angle
+        nearest[i] = np.argmax(field.cos2[i, :, None] * angles[:, 0] + field.sin2[i, :, None] * angles[:, 1], axis=1)
+    coder = Coder()
+    _code_angles(coder, nearest)
+    coder.samples(_by_blocks(field.confidence), SURE)
+    return DIRECTIONS + _numbers(columns, rows) + _finished(coder)
+
+
+def directions_from(data: bytes) -> Directions:
+    """What `directions_bytes` wrote."""
+    (columns, rows), rest = _header(data, DIRECTIONS, 2)
+    if not (columns and rows):
+        raise FormatError(f"directions of {columns} x {rows} samples")
+    _check_field(columns, rows)
+    coder = Coder(rest)
+    nearest = np.zeros((rows, columns), np.int64)
+    _code_angles(coder, nearest)
+    levels = np.zeros((-(-rows // BLOCK), -(-columns // BLOCK)), np.int32)
+    coder.samples(levels, SURE)
+    _check_end(coder)
+    if not levels.any():
+        raise FormatError("confidence is 0 everywhere")
+    cos2, sin2 = np.moveaxis(_angles()[nearest], 2, 0)
+    confidence = levels.repeat(BLOCK, axis=0).repeat(BLOCK, axis=1)[:rows, :columns] / SURE
+    return Directions(np.ascontiguousarray(cos2), np.ascontiguousarray(sin2), confidence)
+
+
+def _check_field(columns: int, rows: int) -> None:
+    if columns * rows > MAX_FIELD:
+        raise LimitError(f"{columns} x {rows} samples of a direction field; {MAX_FIELD} are allowed")
+
+
+def _by_blocks(confidence: npt.NDArray[np.floating]) -> npt.NDArray[np.int32]:
+    """Levels of confidence, the mean of a block each; at least one above 0."""
+    h, w = confidence.shape
+    whole = np.pad(confidence.astype(np.float64), ((0, -h % BLOCK), (0, -w % BLOCK)), mode="edge")
+    mean = np.zeros((len(whole) // BLOCK, whole.shape[1] // BLOCK))
+    for i in range(BLOCK):
+        for j in range(BLOCK):
+            mean += whole[i::BLOCK, j::BLOCK] / BLOCK**2
+    levels = np.floor(np.clip(mean, 0, 1) * SURE + 0.5).astype(np.int32)
+    if not levels.any():
+        levels[np.unravel_index(np.argmax(mean), mean.shape)] = 1
+    return levels
+
+
+def _code_angles(coder: Coder, nearest: Ints) -> None:
+    """Angles (h, w), 0 … ANGLES − 1, row by row, each as its turn from what its neighbours let expect; in place."""
+    h, w = nearest.shape
+    turns = np.zeros((2, w + 2), np.int64).tolist()  # of this row and the last, how large they were
+    above: list[int] = [0] * (w + 2)
+    for i in range(h):
+        given, row = nearest[i].tolist(), [0] * (w + 2)
+        ahead = above[1]
+        last, before = turns[(i + 1) & 1], turns[i & 1]
+        for j in range(w):
+            if coder.overrun:
+                return
+            # The neighbours are told by their turns from the west one, so that the half turn is no seam.
+            west = row[j] if j else ahead
+            north = west + _turn(above[j + 1] - west) if i else west
+            north_west = west + _turn(above[j] - west) if i and j else north
+            north_east = north + _turn(above[j + 2] - north) if i and j + 1 < w else north
+            guess = (2 * (west + north) + north_east - north_west + 2) >> 2
+            rough = abs(west - north_west) + abs(north - north_west) + abs(north - north_east)
+            near = last[j + 1] + last[j + 2] + before[j]
+            aside = 7 * _within_3(west - guess) + _within_3(north - guess)
+            turn = coder.number(_turn(given[j] - guess), _TURN, 12 * _size(near) + _size(rough), aside)
+            row[j + 1] = (guess + turn) % ANGLES
+            before[j + 1] = min(ANGLES, abs(turn))
+        above = row
+        nearest[i] = row[1:-1]
+
+
+def _turn(steps: int) -> int:
+    """The same turn between −ANGLES / 2 and ANGLES / 2."""
+    return (steps + ANGLES // 2) % ANGLES - ANGLES // 2
+
+
+def _size(value: int) -> int:
+    """0 … 11, finer for small numbers."""
+    return value if value < 6 else min(11, 6 + (value - 6) // 4)
+
+
+def _within_3(value: int) -> int:
+    """0 … 6."""
+    return max(-3, min(3, value)) + 3
 
 
 # -------------------------------------------------------------------------------- edges

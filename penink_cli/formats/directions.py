@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, BinaryIO
 from penink_cli.formats import pgm
 from penink_cli.ground.errors import FormatError, PeninkError, in_quotes
 from penink_cli.ground.model import Directions, GreyImage
+from penink_cli.ground.shapes import same_shape
 
 if TYPE_CHECKING:
     from penink_cli.ground.streams import Output
@@ -55,6 +56,14 @@ def _plane(stream: BinaryIO, source: str, max_pixels: int, name: str, first: boo
         return GreyImage(*pgm.read_raster(stream, source, max_pixels, magic))
     except PeninkError as error:
         raise type(error)(f"{name}: {error.message}", source) from None
+
+
+def check_shape(directions: Directions, width: int, height: int) -> None:
+    """Raise FormatError where no resizing, rounded to whole samples, leads from the field to a picture of that size."""
+    rows, columns = directions.cos2.shape
+    if not same_shape(columns, rows, width, height):
+        picture = f"the picture has {width} x {height} pixels, which is another shape"
+        raise FormatError(f"a field of {columns} x {rows} samples; {picture}")
 
 
 def rounded(directions: Directions, levels: int = MAXVAL) -> Directions:

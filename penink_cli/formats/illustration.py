@@ -4,8 +4,8 @@
      "layers": [{"name": "keys", "samples": "keys.pgm", "edges": "keys.edges.json",
                  "texture": "crosshatch", "outline": {"pen": 0.7, "min_strength": 0.1}}]}
 
-Samples are PGM files or compact ones, edges are edge lists or compact ones, told apart by their
-first bytes; paths are relative to the manifest. The same manifest, beside compact members, is what a
+Samples are PGM files or compact ones, edges are edge lists or compact ones, and so are directions, told apart by
+their first bytes; paths are relative to the manifest. The same manifest, beside compact members, is what a
 ``*.penink`` archive holds. See README.md beside this file and schemas/illustration.schema.json.
 """
 
@@ -18,10 +18,10 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
-from penink_cli.formats import compact, edge_list, pgm, strict_json
+from penink_cli.formats import compact, directions, edge_list, pgm, strict_json
 from penink_cli.formats import texture as texture_format
 from penink_cli.ground.errors import FormatError, LimitError, PeninkError
-from penink_cli.ground.model import EdgeList, GreyImage, Illustration, Layer, OutlineChoice, Texture
+from penink_cli.ground.model import Directions, EdgeList, GreyImage, Illustration, Layer, OutlineChoice, Texture
 
 FORMAT = "penink-illustration"
 MANIFEST = "illustration.json"  # its name within an archive
@@ -93,8 +93,10 @@ def _layer(item: dict[str, Any], place: str, fetch: Fetch, shipped: Shipped, max
     rule = strict_json.text(item.get("rule", "best"), f"{place}: rule")
     if rule not in RULES:
         raise FormatError(f"{place}: rule {strict_json.quoted(rule)}; known are {', '.join(RULES)}")
+    samples = member("samples", lambda data: _samples(data, max_pixels))
+    field = member("directions", lambda data: _directions(data, samples, max_pixels)) if "directions" in item else None
     return Layer(
-        samples=member("samples", lambda data: _samples(data, max_pixels)),
+        samples=samples,
         edges=member("edges", lambda data: _edges(data, max_pixels)) if "edges" in item else None,
         texture=texture,
         texture_name=None if own else texture_name,
@@ -105,6 +107,7 @@ def _layer(item: dict[str, Any], place: str, fetch: Fetch, shipped: Shipped, max
         rule=rule,
         seed=strict_json.whole(item.get("seed", 0), f"{place}: seed", 0, 2**63 - 1),
         outline=_outline(item["outline"], f"{place}: outline") if "outline" in item else None,
+        directions=field,
     )
 
 
@@ -142,6 +145,16 @@ def _edges(data: bytes, max_pixels: int) -> EdgeList:
     return edge_list.read(io.BytesIO(data), "", max_pixels)
 
 
+def _directions(data: bytes, samples: GreyImage, max_pixels: int) -> Directions:
+    if data.startswith(compact.DIRECTIONS):
+        found = compact.directions_from(data)
+    else:
+        found = directions.read(io.BytesIO(data), "", max_pixels)
+    rows, columns = samples.values.shape
+    directions.check_shape(found, columns, rows)
+    return found
+
+
 def _texture(data: bytes) -> Texture:
     if data.startswith(compact.TEXT):
         data = compact.text_from(data)
@@ -163,6 +176,9 @@ def members(illustration: Illustration) -> dict[str, bytes]:
         if layer.edges is not None:
             item["edges"] = f"{i}.edges"
             files[item["edges"]] = compact.edges_bytes(layer.edges, compact.GRID * columns, compact.GRID * rows)
+        if layer.directions is not None:
+            item["directions"] = f"{i}.directions"
+            files[item["directions"]] = compact.directions_bytes(layer.directions)
         if layer.texture_name is None:
             item["texture"] = f"{i}.texture"
             files[item["texture"]] = compact.text_bytes(_texture_bytes(layer.texture))
@@ -220,17 +236,20 @@ def rounded(illustration: Illustration) -> Illustration:
     layers = []
     for layer in illustration.layers:
         rows, columns = layer.samples.values.shape
-        edges, texture, outline = layer.edges, layer.texture, layer.outline
+        edges, texture, outline, field = layer.edges, layer.texture, layer.outline, layer.directions
         if edges is not None:
             edges = compact.edges_from(compact.edges_bytes(edges, compact.GRID * columns, compact.GRID * rows))
         if layer.texture_name is None:
             texture = _texture(_texture_bytes(texture))
+        if field is not None:
+            field = compact.directions_from(compact.directions_bytes(field))
         if outline is not None:
             outline = _outline(_outline_item(outline), "outline")
         layers.append(
             replace(
                 layer, samples=compact.requantised(layer.samples, layer.levels), edges=edges, texture=texture,
                 pen_pt=_plain(layer.pen_pt), gamma=float(_plain(layer.gamma)), outline=outline,
+                directions=field,
             )
         )
     return Illustration(_plain(illustration.width), _plain(illustration.height), tuple(layers))

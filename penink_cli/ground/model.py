@@ -363,6 +363,7 @@ class Layer:
     pen_pt: one pen for all hatching, None for the texture's own widths.
     gamma, rule, seed: as `blast` takes them.
     outline: None for no outline strokes.
+    directions: what the hatching follows, None where it lies at the texture's angles.
     """
 
     samples: GreyImage
@@ -376,6 +377,7 @@ class Layer:
     rule: str = "best"
     seed: int = 0
     outline: OutlineChoice | None = None
+    directions: Directions | None = None
 
 
 @dataclass(frozen=True, eq=False)

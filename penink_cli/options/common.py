@@ -232,6 +232,18 @@ def edges_option(required: bool) -> Callable[[F], F]:
     )
 
 
+def directions_option(required: bool) -> Callable[[F], F]:
+    """--directions FILE: the direction field of the image."""
+    return click.option(
+        "--directions",
+        "directions_file",
+        required=required,
+        type=click.Path(allow_dash=True),
+        metavar="FILE",
+        help="The direction field of the image." + ("" if required else " Without it strokes lie at fixed angles."),
+    )
+
+
 threads_option = click.option(
     "--threads",
     type=click.IntRange(1, 256),

@@ -13,11 +13,12 @@ from click.core import ParameterSource
 
 from penink_cli.ground import streams
 from penink_cli.ground.errors import FormatError, LimitError, PeninkError, in_quotes
+from penink_cli.ground.shapes import same_shape
 from penink_cli.options.common import MAX_PIXELS, warn
 
 if TYPE_CHECKING:
     from penink_cli.formats.photo.choices import Choices
-    from penink_cli.ground.model import ColourImage, Directions, EdgeList, GreyImage, Illustration, Lines
+    from penink_cli.ground.model import ColourImage, Directions, EdgeList, GreyImage, Illustration, Lines, Strokes
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -168,16 +169,6 @@ def read_edges(path: str | None, max_pixels: int = 0) -> EdgeList | None:
     return edges
 
 
-def read_lines(path: str | None) -> Lines | None:
-    """Telling lines; None where no file is given."""
-    if path is None:
-        return None
-    from penink_cli.formats import lines
-
-    with streams.reading(path) as stream:
-        return lines.read(stream, streams.source_name(path))
-
-
 def read_directions(path: str | None, width: int, height: int, max_pixels: int) -> Directions | None:
     """A direction field for a picture of width × height pixels; None where no file is given.
 
@@ -190,27 +181,50 @@ def read_directions(path: str | None, width: int, height: int, max_pixels: int) 
     source = streams.source_name(path)
     with streams.reading(path) as stream:
         field = directions.read(stream, source, max_pixels)
-    rows, columns = field.cos2.shape
-    if not _same_shape(columns, rows, width, height):
-        picture = f"the picture has {width} x {height} pixels, which is another shape"
-        raise FormatError(f"a field of {columns} x {rows} samples; {picture}", source)
+    try:
+        directions.check_shape(field, width, height)
+    except PeninkError as error:
+        raise error.from_source(source) from None
     return field
 
 
-def _same_shape(columns: int, rows: int, width: int, height: int) -> bool:
-    """Whether some resizing, rounded to whole numbers on either side, leads from the one size to the other."""
-    least = max((columns - 1) / width, (rows - 1) / height)
-    most = min((columns + 1) / width, (rows + 1) / height)
-    return least <= most
+def read_strokes_or_svg(path: str | None) -> Strokes | None:
+    """What somebody has drawn, as a strokes file or as SVG; None where no file is given."""
+    if path is None:
+        return None
+    from penink_cli.formats import strokes, svg_texture
+
+    source = streams.source_name(path)
+    with streams.reading(path) as stream:
+        start = stream.peek(64)  # type: ignore[attr-defined]
+        if start.removeprefix(b"\xef\xbb\xbf").lstrip().startswith(b"<"):
+            return svg_texture.read(stream, source, source).strokes
+        return strokes.read(stream, source)
 
 
-def warn_of_another_shape(edges: EdgeList, photo: GreyImage, name: str = "this") -> None:
+def read_lines(path: str | None, photo: GreyImage | ColourImage | None = None) -> Lines | None:
+    """Telling lines; None where no file is given. Raises FormatError for a frame of another shape than the photo's."""
+    if path is None:
+        return None
+    from penink_cli.formats import lines
+
+    source = streams.source_name(path)
+    with streams.reading(path) as stream:
+        found = lines.read(stream, source)
+    height, width = (found.height, found.width) if photo is None else photo.values.shape[:2]
+    if not same_shape(found.width, found.height, width, height):
+        picture = f"the photo has {width} x {height}, which is another shape"
+        raise FormatError(f"lines of a picture of {found.width} x {found.height} pixels; {picture}", source)
+    return found
+
+
+def warn_of_another_shape(edges: EdgeList, photo: GreyImage | ColourImage, name: str = "this") -> None:
     """Warn where no resizing, rounded to whole pixels, leads from the edges' frame to the photo.
 
     The photo may be larger or smaller than the one the edges were found in, but hardly of another shape.
     """
-    height, width = photo.values.shape
-    if not _same_shape(width, height, edges.width, edges.height):
+    height, width = photo.values.shape[:2]
+    if not same_shape(width, height, edges.width, edges.height):
         frame = f"{edges.width} x {edges.height}"
         warn(f"the edges are of a picture of {frame} pixels, and {name} of {width} x {height} has another shape")
 

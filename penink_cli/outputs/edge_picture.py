@@ -23,14 +23,7 @@ def write(out: Sink, photo: GreyImage, edges: EdgeList, contaminated: npt.NDArra
     photo: values (h, w); contaminated: (h, w). scale: size of a photo pixel in CSS pixels.
     """
     width, height = edges.width, edges.height
-    pale = 255 - (255 - photo.values * (255.0 / photo.maxval)) * _PALE
-    head = (
-        '<?xml version="1.0" encoding="UTF-8"?>\n<svg xmlns="http://www.w3.org/2000/svg" '
-        f'width="{width * scale:g}" height="{height * scale:g}" viewBox="0 0 {width} {height}">\n'
-        "<style>path{fill:none;stroke-linecap:round;stroke-linejoin:round}image{image-rendering:pixelated}</style>\n"
-    )
-    pictures = _image(np.rint(pale).astype(np.uint8), width, height) + _image(_overlay(contaminated), width, height)
-    out.write((head + pictures).encode())
+    out.write((pale_photo(photo, width, height, scale) + _image(_overlay(contaminated), width, height)).encode())
     pen = max(0.15, 1.2 / scale)
     strength = np.ones(len(edges.edges)) if edges.strength is None else edges.strength
     rank = np.searchsorted([least for least, _ in CLASSES], strength, side="right") - 1
@@ -45,6 +38,17 @@ def write(out: Sink, photo: GreyImage, edges: EdgeList, contaminated: npt.NDArra
     _dots(out, edges.vertices[degree > 2], "junctions", "#2a7d32", 2.2 * pen, pen)
     _dots(out, edges.vertices[degree == 2], "vertices", "#000", 0.3 * pen, 0.6 * pen)
     out.write(b"</svg>\n")
+
+
+def pale_photo(photo: GreyImage, width: int, height: int, scale: float) -> str:
+    """The beginning of an SVG document in which a pale photo fills a frame of width × height user units."""
+    pale = 255 - (255 - photo.values * (255.0 / photo.maxval)) * _PALE
+    head = (
+        '<?xml version="1.0" encoding="UTF-8"?>\n<svg xmlns="http://www.w3.org/2000/svg" '
+        f'width="{width * scale:g}" height="{height * scale:g}" viewBox="0 0 {width} {height}">\n'
+        "<style>path{fill:none;stroke-linecap:round;stroke-linejoin:round}image{image-rendering:pixelated}</style>\n"
+    )
+    return head + _image(np.rint(pale).astype(np.uint8), width, height)
 
 
 def _dots(out: Sink, places: npt.NDArray[np.float64], name: str, colour: str, radius: float, pen: float) -> None:

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
-from penink_cli.formats import edge_list, pgm
-from penink_cli.ground.model import EdgeList, GreyImage
+from penink_cli.formats import directions, edge_list, pgm
+from penink_cli.ground.model import Directions, EdgeList, GreyImage
 
 WIDTH, HEIGHT = 24, 18
 
@@ -32,6 +32,8 @@ CALLS = {
     "detect-edges": Call("photo.png"),
     "detect-lines": Call("photo.png"),
     "extract-samples": Call("photo.png", ("-e", "photo.edges.json")),
+    "detect-directions": Call("photo.png", ("-e", "photo.edges.json", "--strokes", "photo.strokes.jsonl")),
+    "show-directions": Call("photo.png", ("-e", "photo.edges.json", "--directions", "photo.directions.pgm")),
     "reduce": Call("samples.pgm", ("-e", "photo.edges.json", "--factor", "2")),
     "enlarge": Call("samples.pgm", ("-e", "photo.edges.json", "--scale", "3")),
     "blast": Call("samples.pgm", ("--texture", "crosshatch", "--width", "0.35in", "-e", "photo.edges.json")),
@@ -65,6 +67,13 @@ def disc() -> GreyImage:
     return GreyImage(np.where(inside, 40 + 3 * y, 200 + x).astype(np.uint8))
 
 
+def rings() -> Directions:
+    """Round the disc's middle, more surely the nearer."""
+    y, x = np.mgrid[:HEIGHT, :WIDTH] + 0.5 - [[[9]], [[12]]]
+    square = x * x + y * y
+    return Directions((y * y - x * x) / square, -2 * x * y / square, 1 / (1 + square / 100))
+
+
 def frame(points: list[tuple[float, float]]) -> EdgeList:
     """A closed chain through the points."""
     n = len(points)
@@ -87,6 +96,7 @@ def make_inputs(folder: Path) -> None:
     (folder / "samples.pgm").write_bytes(encoded(pgm.write, image))
     octagon = [(7.5, 6), (10, 3.5), (14, 3.5), (16.5, 6), (16.5, 12), (14, 14.5), (10, 14.5), (7.5, 12)]
     (folder / "photo.edges.json").write_bytes(encoded(edge_list.write, frame(octagon)))
+    (folder / "photo.directions.pgm").write_bytes(encoded(directions.write, rings()))
     drawn = strokes_text(
         72,
         54,

@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from penink_cli.formats import edge_list, pgm
-from penink_cli.ground.model import EdgeList, GreyImage
+from penink_cli.formats import directions, edge_list, pgm
+from penink_cli.ground.model import Directions, EdgeList, GreyImage
 
 
 def square(width: int = 96, height: int = 64, strength: float = 0.7) -> EdgeList:
@@ -26,6 +26,13 @@ def grey(columns: int = 24, rows: int = 16) -> GreyImage:
     values = 200 + 2 * x
     values[(x > 5) & (x < 17) & (y > 3) & (y < 12)] = 60
     return GreyImage(values.astype(np.uint8), 255)
+
+
+def whirl(columns: int = 24, rows: int = 16) -> Directions:
+    """Rings round a place off the middle, surer near it."""
+    y, x = np.mgrid[0:rows, 0:columns] - np.array([7.2, 10.7])[:, None, None]
+    square = x * x + y * y
+    return Directions((y * y - x * x) / square, -2 * x * y / square, 1 / (1 + square / 50))
 
 
 def save_edges(path: Path, edges: EdgeList) -> None:
@@ -48,6 +55,8 @@ def loose(tmp_path: Path) -> Path:
     save_grey(tmp_path / "square.pgm", grey())
     save_grey(tmp_path / "shade.pgm", shade)
     save_edges(tmp_path / "square.edges.json", square())
+    with (tmp_path / "square.directions.pgm").open("wb") as out:
+        directions.write(out, whirl())  # type: ignore[arg-type]
     manifest = {
         "format": "penink-illustration",
         "version": 1,
@@ -55,7 +64,12 @@ def loose(tmp_path: Path) -> Path:
         "height": 64,
         "layers": [
             {"name": "shade", "samples": "shade.pgm", "texture": "parallel", "seed": 3},
-            {"samples": "square.pgm", "edges": "square.edges.json", "outline": {"min_strength": 0.25}},
+            {
+                "samples": "square.pgm",
+                "edges": "square.edges.json",
+                "directions": "square.directions.pgm",
+                "outline": {"min_strength": 0.25},
+            },
         ],
     }
     path = tmp_path / "two.illustration.json"

@@ -54,11 +54,16 @@ def test_pack_twice_gives_the_same_bytes_and_so_does_what_was_unpacked(penink, l
 
 def test_the_manifest_wastes_nothing(packed):
     members = contents(packed)
-    assert list(members) == ["illustration.json", "0.samples", "1.samples", "1.edges"]
+    assert list(members) == ["illustration.json", "0.samples", "1.samples", "1.edges", "1.directions"]
     manifest = json.loads(members["illustration.json"])
     assert manifest["layers"] == [
         {"name": "shade", "samples": "0.samples", "texture": "parallel", "seed": 3},
-        {"samples": "1.samples", "edges": "1.edges", "outline": {"min_strength": 0.25}},
+        {
+            "samples": "1.samples",
+            "edges": "1.edges",
+            "directions": "1.directions",
+            "outline": {"min_strength": 0.25},
+        },
     ]
     with zipfile.ZipFile(io.BytesIO(packed)) as z:
         assert {i.date_time for i in z.infolist()} == {(1980, 1, 1, 0, 0, 0)}

@@ -11,9 +11,9 @@ from penink_cli.formats import compact
 from penink_cli.formats._compiled import compact as _compact
 from penink_cli.geometry import quantisation, validity
 from penink_cli.ground.errors import FormatError, LimitError, PeninkError
-from penink_cli.ground.model import EdgeList, GreyImage
+from penink_cli.ground.model import Directions, EdgeList, GreyImage
 from tests.conftest import ROOT
-from tests.illustration.conftest import grey, square
+from tests.illustration.conftest import grey, square, whirl
 
 
 def as_set(edges: EdgeList) -> set[tuple]:
@@ -72,6 +72,27 @@ def test_edges_come_back_exactly_and_in_an_order_of_their_own(seed):
     assert compact.edges_bytes(shuffled, 80, 60) == packed
 
 
+@pytest.mark.parametrize(("rows", "columns"), [(1, 1), (1, 9), (5, 1), (64, 96), (33, 47)])
+def test_directions_come_back_within_a_level_and_then_exactly(rows, columns):
+    field = whirl(columns, rows)
+    packed = compact.directions_bytes(field)
+    back = compact.directions_from(packed)
+    off = np.degrees(np.arccos(np.clip(back.cos2 * field.cos2 + back.sin2 * field.sin2, -1, 1))) / 2
+    assert off.max() < 3.75 / 2 + 1e-6 and np.abs(back.cos2**2 + back.sin2**2 - 1).max() < 1e-9
+    assert compact.directions_bytes(back) == packed
+    assert len(compact.directions_bytes(whirl(96, 96))) < 1000
+
+
+def test_the_angles_of_hatching_are_kept_exactly_and_some_confidence_remains():
+    double = np.radians([[-90, 0, 90, 180]])
+    field = Directions(np.cos(double), np.sin(double), 0.01 + 0 * double)
+    back = compact.directions_from(compact.directions_bytes(field))
+    assert np.abs(back.cos2 - np.cos(double)).max() < 1e-9 and np.abs(back.sin2 - np.sin(double)).max() < 1e-9
+    assert back.confidence.max() == pytest.approx(1 / 7)
+    unknown = compact.directions_from(compact.directions_bytes(Directions(0 * double, 0 * double, 1 + 0 * double)))
+    assert (unknown.cos2 == 1).all() and (unknown.sin2 == 0).all()
+
+
 def test_text_comes_back():
     text = b'{"points": [[1.5, 2.25], [3, 4]]}\n' * 50
     packed = compact.text_bytes(text)
@@ -83,6 +104,7 @@ def test_text_comes_back():
 PACKED = {
     "samples": (compact.samples_bytes(grey()), lambda data: compact.samples_from(data, 2000)),
     "edges": (compact.edges_bytes(quantisation.quantise(square(), 384, 256), 384, 256), compact.edges_from),
+    "directions": (compact.directions_bytes(whirl()), compact.directions_from),
     "text": (compact.text_bytes(b"the quick brown fox jumps over the lazy dog"), compact.text_from),
 }
 
@@ -111,6 +133,8 @@ def test_damaged_members_give_an_error_or_something_sound(kind):
             continue
         if kind == "samples":
             assert found.values.max() <= found.maxval
+        if kind == "directions":
+            assert np.allclose(found.cos2**2 + found.sin2**2, 1) and found.confidence.max() <= 1
 
 
 def test_a_few_bytes_cannot_announce_more_than_is_allowed():
@@ -118,6 +142,10 @@ def test_a_few_bytes_cannot_announce_more_than_is_allowed():
         compact.samples_from(compact.SAMPLES + b"\xff\xff\x7f\xff\xff\x7f\x3f" + bytes(20), 10**12)
     with pytest.raises(FormatError, match="truncated"):
         compact.edges_from(compact.EDGES + b"\x10\x10\x10\x10\xff\xff\x7f\x00" + bytes(20))
+    with pytest.raises(LimitError, match="16384 x 16384 samples of a direction field"):
+        compact.directions_from(compact.DIRECTIONS + b"\x80\x80\x01\x80\x80\x01" + bytes(20))
+    with pytest.raises(FormatError, match="0 x 7 samples"):
+        compact.directions_from(compact.DIRECTIONS + b"\x00\x07" + bytes(20))
     with pytest.raises(LimitError):
         compact.text_from(compact.TEXT + b"\xff\xff\xff\x7f" + bytes(20))
 

@@ -1,0 +1,130 @@
+"""What a photograph says of the form: tangents of its tones, each with a weight, before anything is smoothed.
+
+Directions are double-angle vectors (cos 2θ, sin 2θ) here, so that opposite ways are the same and may be added up. The
+length of a sum is how far its parts agree.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from penink_cli.composition.filters import Picture, blurred, shrunk
+from penink_cli.composition.mixing import lab
+from penink_cli.directions._compiled import field as kernel
+from penink_cli.ground.model import ColourImage, EdgeList, Floats, GreyImage
+from penink_cli.reconstruction._compiled import walls as _walls
+from penink_cli.reconstruction.extraction import segments
+
+LONG = 384  # pixels of the long side of the view that tangents are taken of
+_HUE = 0.7  # how much a step in colour counts beside one in lightness
+_FINE = 0.8  # σ of the gradient, pixels of that view
+_GRAIN = 0.012  # a gradient, Lab lightness of 1 a pixel, that is hardly more than grain
+_AROUND = 6.0  # σ, pixels: each place's evidence is judged by what there is around
+_RIM = 0.012  # of the width: scans have dark rims, which would rule everything
+_BESIDE = 2.5  # pixels on either side of a strong edge that the silhouette has made, not the form
+STRONG = 0.15  # grey step of an edge that parts one thing from another
+_OUTSIDE, _INSIDE = 0.05, 0.5  # weight beside an edge: in the open, and where edges are all around
+_REACH = 0.13  # of the long side: how far an edge may be that surrounds a place
+_STEEP = (0.9807852804032304, 0.19509032201612825), (0.8314696123025452, 0.5555702330196022)
+_RAYS = np.array(  # 16 directions, half a step off the axes
+    [(s * a, t * b) for c, d in _STEEP for a, b in ((c, d), (d, c)) for s in (1, -1) for t in (1, -1)]
+)
+
+
+@dataclass(frozen=True, eq=False)
+class Evidence:
+    """Directions a photograph shows: vectors (h, w, 2) no longer than their weight (h, w), and trust (h, w), 0 … 1.
+
+    weight: how much there is of them beside the noise, 0 … 1. trust: 1 save beside silhouettes and at the frame.
+    """
+
+    vectors: Floats
+    weight: Floats
+    trust: Floats
+
+
+def tangents(photo: GreyImage | ColourImage, edges: EdgeList, noise: float) -> Evidence:
+    """The directions along which the photo's tones and colours change least, at LONG pixels or fewer.
+
+    noise: a mean gradient, of 1 a pixel, below which places count less and less.
+    """
+    h, w = photo.values.shape[:2]
+    shrink = max(1.0, max(h, w) / LONG)
+    rows, columns = max(1, round(h / shrink)), max(1, round(w / shrink))
+    vectors = np.zeros((rows, columns, 2))
+    for plane in _planes(photo, columns, rows):
+        dx, dy = _gradient(blurred(plane, _FINE))
+        vectors[..., 0] += dy * dy - dx * dx  # along the tones: −(dx + i dy)²
+        vectors[..., 1] -= 2 * dx * dy
+    square = np.sqrt(vectors[..., 0] * vectors[..., 0] + vectors[..., 1] * vectors[..., 1])
+    # By its gradient and not by the square of it: strong edges would shout all others down.
+    trust = _trust(edges, rows, columns)
+    loud = trust * np.sqrt(square) / (square + _GRAIN * _GRAIN)
+    around = _smooth(loud * square, _AROUND) / np.maximum(_smooth(trust, _AROUND), 0.15) + noise
+    return Evidence(vectors * (loud / around)[..., None], loud * square / around, trust)
+
+
+def _planes(photo: GreyImage | ColourImage, width: int, height: int) -> list[Picture]:
+    """Lightness, and the two of colour where there is any, of Lab / 100."""
+    small = shrunk(photo.values, width, height, 1 / photo.maxval)
+    if small.ndim == 2:
+        small = np.dstack([small] * 3)
+    planes = lab(small) * np.array([0.01, 0.01 * _HUE, 0.01 * _HUE])
+    count = 3 if isinstance(photo, ColourImage) else 1
+    return [np.ascontiguousarray(planes[..., k], np.float32) for k in range(count)]
+
+
+def _gradient(plane: Picture) -> tuple[Floats, Floats]:
+    """Along x and y, a pixel, central; at the frame to the one neighbour there is."""
+    padded = np.pad(plane.astype(np.float64), 1, mode="edge")
+    return (padded[1:-1, 2:] - padded[1:-1, :-2]) * 0.5, (padded[2:, 1:-1] - padded[:-2, 1:-1]) * 0.5
+
+
+def _smooth(values: Floats, sigma: float) -> Floats:
+    return blurred(np.ascontiguousarray(values, np.float32), sigma).astype(np.float64)
+
+
+def _trust(edges: EdgeList, rows: int, columns: int) -> Floats:
+    """Little beside a silhouette in the open, which tells of the thing's border; more where a thing is all around.
+
+    So an object keeps its roundness, while the sky is not dragged round a head and a coin is no onion.
+    """
+    trust = np.ones((rows, columns))
+    strong = _strong(edges)
+    if len(strong.edges):
+        distance = np.full((rows, columns), np.float32(1e9))
+        _walls.near(*segments(strong, columns, rows), _BESIDE, distance)
+        beside = distance <= _BESIDE
+        h, w = max(1, -(-rows // 4)), max(1, -(-columns // 4))
+        part = np.clip((_surrounded(strong, h, w) - 0.5) / 0.3, 0, 1)
+        part = (part * part * (3 - 2 * part))[np.arange(rows) * h // rows][:, np.arange(columns) * w // columns]
+        trust = np.where(beside, _OUTSIDE + (_INSIDE - _OUTSIDE) * part, 1.0)
+    rim = max(3, round(_RIM * columns))
+    trust[:rim] = trust[-rim:] = 0
+    trust[:, :rim] = trust[:, -rim:] = 0
+    return trust
+
+
+def _strong(edges: EdgeList) -> EdgeList:
+    """The edges that part one thing from another; all where no strength is known."""
+    if edges.strength is None:
+        return edges
+    return EdgeList(edges.width, edges.height, edges.vertices, edges.edges[edges.strength >= STRONG])
+
+
+def _surrounded(strong: EdgeList, h: int, w: int) -> Floats:
+    """(h, w) the part of the directions in which a strong edge is met within reach."""
+    distance = np.full((2 * h, 2 * w), np.float32(1e9))
+    _walls.near(*segments(strong, 2 * w, 2 * h), 0.8, distance)
+    out = np.empty((h, w))
+    kernel.surrounded((distance <= 0.8).astype(np.uint8), _REACH * 2 * max(h, w), _RAYS, out)
+    return out
+
+
+def links(edges: EdgeList, rows: int, columns: int) -> tuple[Floats, Floats]:
+    """Whether strong edges cut the link of each sample to the next in its row, and to that of the next row: 0 or 1."""
+    walls = np.zeros((rows, columns), np.uint8)
+    _walls.block(*segments(_strong(edges), columns, rows), walls)
+    return (walls & _walls.RIGHT != 0).astype(np.float64), (walls & _walls.DOWN != 0).astype(np.float64)

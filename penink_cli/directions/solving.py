@@ -1,0 +1,81 @@
+"""The smooth field that evidence leaves: a screened Poisson equation, its links cut at edges, its knots calmed.
+
+(λ L + κ w + p) x = d + p f, with L the Laplacian of the grid whose links are cut where strong edges pass, w the
+weight of the evidence, d its vectors, and a little p of the hatch's own direction f everywhere. Only here is anything
+smoothed: what is smoothed before leaks across edges.
+
+A line field cannot avoid singularities, places around which it makes half a turn, but it need not have more of them
+than the picture has: the evidence around each is weakened and the equation solved again. Knots and whorls are what
+the eye objects to most.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from penink_cli.composition.filters import blurred
+from penink_cli.directions._compiled import field as kernel
+from penink_cli.ground.model import Floats
+
+SMOOTH = 5.0  # λ
+_KEEP = 0.3  # κ: evidence pulls with its weight, and is held by a third of it
+_CUT = 1e-4  # of a link, where an edge cuts it
+_CALMED = 8  # times that evidence is weakened at the most
+_AROUND = 2.2  # σ, samples, of what is weakened around a singularity
+_WEAKEN = 0.6
+_PEAK = 0.0329  # of a Gaussian of that σ
+_CLOSE = 1e-5  # relative: a thousandth of a degree
+_MOST = 2000  # rounds of the solver; some 100 are usual
+
+
+def solved(
+    vectors: Floats,
+    weight: Floats,
+    fixed: npt.NDArray[np.bool_],
+    cut: tuple[Floats, Floats],
+    own: tuple[float, float],
+    pull: float,
+) -> tuple[Floats, Floats]:
+    """The field x (h, w, 2), of any length, and the part of it, 0 … 1, that evidence and not the hatch's own angle
+    says.
+
+    vectors, weight: evidence, (h, w, 2) and (h, w). fixed: (h, w) evidence that is never weakened.
+    cut: as of `evidence.links`. own: the hatch's own direction, a double-angle unit vector. pull: p, above 0.
+    """
+    right, down = (SMOOTH * np.maximum(1 - plane, _CUT) for plane in cut)
+    h, w = weight.shape
+    keep = np.ones((h, w))
+    planes = np.zeros((h, w, 3))  # x without the hatch's own angle, and how much of that there is
+    room = np.empty((4, h, w, 3))
+    for calmed in range(_CALMED + 1):
+        target = np.dstack([vectors * keep[..., None], np.full((h, w), pull)])
+        kernel.solve(right, down, _KEEP * weight * keep + pull, target, planes, room, _CLOSE, _MOST)
+        x = planes[..., :2] + planes[..., 2:] * np.array(own)
+        knots = singular(x, cut) if calmed < _CALMED else np.zeros((h, w), bool)
+        if not knots.any():
+            break
+        blob = np.minimum(blurred(knots.astype(np.float32), _AROUND).astype(np.float64) / _PEAK, 1.0)
+        keep = np.where(fixed, 1.0, keep * (1 - _WEAKEN * blob))
+    length = np.sqrt(planes[..., 0] * planes[..., 0] + planes[..., 1] * planes[..., 1])
+    return x, length / (length + planes[..., 2])
+
+
+def singular(x: Floats, cut: tuple[Floats, Floats]) -> npt.NDArray[np.bool_]:
+    """Samples (h, w) that are the upper left of four around which x (h, w, 2) turns once, the line field half.
+
+    Not where edges part the four.
+    """
+    around = (x[:-1, :-1], x[:-1, 1:], x[1:, 1:], x[1:, :-1])
+    turns = np.zeros((x.shape[0] - 1, x.shape[1] - 1), np.int64)
+    for a, b in zip(around, around[1:] + around[:1], strict=True):
+        # how often the side from a to b crosses the positive half of the first axis, upwards less downwards
+        rises = (a[..., 1] < 0) & (b[..., 1] >= 0)
+        falls = (a[..., 1] >= 0) & (b[..., 1] < 0)
+        left = a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
+        turns += (rises & (left > 0)).astype(np.int64) - (falls & (left < 0))
+    right, down = cut
+    parted = right[:-1, :-1] + right[1:, :-1] + down[:-1, :-1] + down[:-1, 1:] > 1
+    found = np.zeros(x.shape[:2], bool)
+    found[:-1, :-1] = (turns != 0) & ~parted
+    return found
