@@ -26,6 +26,7 @@ from penink_cli.options.common import (
     warn,
 )
 from penink_cli.options.inputs import photo_options, read_photo
+from penink_cli.options.layers import as_printed
 from penink_cli.options.sheet import check_sheet
 from penink_cli.options.textures import find_texture, texture_option
 
@@ -145,6 +146,7 @@ def _write_svg(output: str | None, layers: Sequence[Strokes]) -> None:
     from penink_cli.outputs import svg
     from penink_cli.outputs.page import lay_out
 
+    layers = as_printed(layers, None)
     with writing(output, binary=False) as out:
         svg.write(out, layers, lay_out(layers))
 
@@ -153,6 +155,7 @@ def _write_pdf(output: str | None, layers: Sequence[Strokes]) -> None:
     from penink_cli.outputs import pdf
     from penink_cli.outputs.page import lay_out
 
+    layers = as_printed(layers, None)
     with writing(output) as out:
         pdf.write(out, layers, lay_out(layers))
 
@@ -161,6 +164,7 @@ def _write_png(output: str | None, layers: Sequence[Strokes]) -> None:
     from penink_cli.outputs.page import lay_out
     from penink_cli.outputs.raster import cover, png
 
+    layers = as_printed(layers, None)
     page = lay_out(layers)
     with writing(output) as out:
         png.write(out, cover.size(page, PNG_DPI), PNG_DPI, 8, cover.bands(layers, page, PNG_DPI, 255, processors()))

@@ -11,6 +11,7 @@ from penink_cli.options.common import output_options
 from penink_cli.options.layers import (
     as_printed,
     colour_option,
+    colours_of,
     files_argument,
     gain_option,
     page_options,
@@ -49,4 +50,4 @@ def to_pdf(
     layers = as_printed(read_layers(files), device_dpi)
     page = lay_out(layers, paper, margin, landscape)
     with writing(output) as out:
-        pdf.write(out, layers, page, colours)
+        pdf.write(out, layers, page, colours_of(layers, colours))

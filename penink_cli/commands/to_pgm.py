@@ -31,6 +31,8 @@ def _pixels(
     from penink_cli.outputs.page import lay_out
     from penink_cli.outputs.raster import cover
 
+    if device_dpi is None and not png:  # nobody looks at it: what the strokes themselves cover
+        device_dpi = 0.0
     layers = as_printed(read_layers(files), device_dpi)
     page = lay_out(layers, paper, margin, landscape)
     width, height = cover.size(page, dpi)

@@ -8,7 +8,7 @@ import click
 
 from penink_cli.ground.streams import writing
 from penink_cli.options.common import Finite, output_options
-from penink_cli.options.layers import colour_option, files_argument, page_options, read_layers
+from penink_cli.options.layers import colour_option, colours_of, files_argument, page_options, read_layers
 
 
 @click.command(name="to-ps")
@@ -72,9 +72,9 @@ def to_ps(
         from penink_cli.ground.device import narrowed
 
         layers = [narrowed(layer, device_dpi) for layer in layers]
-    page = lay_out(layers, paper, margin, landscape)
+    page, inks = lay_out(layers, paper, margin, landscape), colours_of(layers, colours)
     with writing(output, binary=False) as out:
-        postscript.write(out, layers, page, colours, compress, order=partial(ordered, improve=False))
+        postscript.write(out, layers, page, inks, compress, order=partial(ordered, improve=False))
 
 
 def write_self_drawing(files: tuple[str, ...], output: str | None, packing: str, max_pixels: int) -> None:

@@ -244,7 +244,8 @@ class Strokes:
         if not len(self):
             return self
         means = np.add.reduceat(knot_widths, knots[:-1]) / np.diff(knots)
-        return replace(self, widths=means, knot_widths=knot_widths)
+        swelling = replace(self, widths=means, knot_widths=knot_widths)
+        return replace(swelling, widths=np.where(swelling.swells, means, knot_widths[knots[:-1]]))
 
     def taken(self, which: npt.NDArray[Any], turned: npt.NDArray[np.bool_] | None = None) -> Strokes:
         """The strokes with these numbers, in that order, or those where a mask (s,) is true.

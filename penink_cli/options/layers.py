@@ -12,7 +12,7 @@ import click
 from penink_cli.ground.errors import ParameterError, in_quotes
 from penink_cli.ground.papers import paper_size
 from penink_cli.ground.streams import reading, source_name
-from penink_cli.options.common import LENGTH, Finite, Length
+from penink_cli.options.common import LENGTH, DeviceDpi, Length
 
 if TYPE_CHECKING:  # numpy and what needs it are imported when there is work, not for a help text
     from penink_cli.ground.model import Strokes
@@ -87,17 +87,26 @@ colour_option = click.option(
     type=Colour(),
     multiple=True,
     metavar="COLOUR",
-    help="Colour of the ink, #rrggbb or a name; given again, of the next layer.  [default: black]",
+    help="Colour of the ink, #rrggbb or a name; given again, of the next layer.  [default: as the file says, or black]",
 )
+
+
+class Gain(DeviceDpi):
+    """Dots per inch of the printer whose gain is drawn, 0 for ``none``."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
+        """The resolution, 0 for ``none``."""
+        return super().convert(value, param, ctx) or 0.0
 
 
 def gain_option(function: F) -> F:
     """--device-dpi, for outputs that add nothing to a stroke's width."""
     return click.option(
         "--device-dpi",
-        type=Finite(10, 100_000),
-        metavar="N",
-        help="Draw the strokes as wide as a printer of N dots an inch paints them, for which blast made them.",
+        type=Gain(),
+        metavar="N|none",
+        help="Draw the strokes as wide as a printer of N dots an inch paints them.  [default, for what is looked at on "
+        "a screen: the printer that the strokes are made for, as their file says]",
     )(function)
 
 
@@ -138,12 +147,19 @@ def read_layers(files: Sequence[str]) -> list[Strokes]:
 
 
 def as_printed(layers: Sequence[Strokes], device_dpi: float | None) -> list[Strokes]:
-    """The layers with what a printer adds to their width, if one is named."""
-    if device_dpi is None:
-        return list(layers)
+    """The layers with what a printer adds to their width: the one named, 0 for none, or else the one in their file."""
     from penink_cli.ground.device import widened
 
-    return [widened(layer, device_dpi) for layer in layers]
+    printers = [layer.device_dpi if device_dpi is None else device_dpi for layer in layers]
+    return [widened(layer, dpi) if dpi else layer for layer, dpi in zip(layers, printers)]
+
+
+def colours_of(
+    layers: Sequence[Strokes], chosen: Sequence[tuple[float, float, float]]
+) -> list[tuple[float, float, float]]:
+    """Red, green and blue of each layer's ink: as chosen, else as its file says, else black."""
+    own = (layer.color or "#000000" for layer in layers[len(chosen) :])
+    return [*chosen, *((int(c[1:3], 16) / 255, int(c[3:5], 16) / 255, int(c[5:], 16) / 255) for c in own)]
 
 
 def for_a_pen(

@@ -59,6 +59,6 @@ def ink_box(strokes: Strokes) -> tuple[float, float, float, float] | None:
     """x0, y0, x1, y1 of a box that holds all ink of these strokes (y down), by their control points."""
     if not len(strokes):
         return None
-    half = np.repeat(strokes.widths / 2, np.diff(strokes.first))[:, None]
+    half = np.repeat(strokes.widest / 2, np.diff(strokes.first))[:, None]
     low, high = (strokes.points - half).min(axis=0), (strokes.points + half).max(axis=0)
     return float(low[0]), float(low[1]), float(high[0]), float(high[1])

@@ -15,7 +15,7 @@ import pydyf
 
 from penink_cli.formats.strokes import Sink
 from penink_cli.ground.model import Strokes
-from penink_cli.outputs import words
+from penink_cli.outputs import swelling, words
 from penink_cli.outputs.page import Page
 
 DECIMALS = 3  # of a point
@@ -35,8 +35,13 @@ def write(
         groups.append(group.reference)
         properties[f"L{i + 1}"] = group.reference
         colour = colours[i] if i < len(colours) else (0.0, 0.0, 0.0)
-        paint = b"0 G" if colour == (0, 0, 0) else b"%.4f %.4f %.4f RG" % colour
-        content += [b"/OC /L%d BDC\n%s\n" % (i + 1, paint), *_paths(layer, page), b"EMC\n"]
+        paint = b"0 G\n" if colour == (0, 0, 0) else b"%.4f %.4f %.4f RG\n" % colour
+        content += [b"/OC /L%d BDC\n" % (i + 1), paint]
+        swells = layer.swells
+        if swells.any():
+            layer, wide = layer.taken(~swells), layer.taken(swells)
+            content += [paint.lower(), _outlines(wide, page)]
+        content += [*_paths(layer, page), b"EMC\n"]
     # Sides beyond Acrobat's limit are given in a larger unit.
     unit = max(1.0, max(page.width, page.height) / MOST)
     if unit > 1:
@@ -87,6 +92,18 @@ def _paths(layer: Strokes, page: Page) -> list[bytes]:
     copies = np.cumsum(times) - 1  # the last copy of each point
     after[copies[last[counts == 1]], 1] = 3 + len(pens) + 1 + switch[counts == 1]
     return [_pens(pens)[1 + pen[0]], bytes(words.text(numbers.ravel(), after.ravel(), table, DECIMALS))]
+
+
+def _outlines(strokes: Strokes, page: Page) -> bytes:
+    """The operators that fill the outlines of strokes that swell."""
+    points, first = swelling.outlines(strokes)
+    numbers = words.whole((points * (1, -1) + np.array((page.x, page.height - page.y))) * 10**DECIMALS)
+    inner = np.arange(len(numbers)) - np.repeat(first[:-1], np.diff(first))
+    after = np.zeros((len(numbers), 2), np.int32)
+    after[inner == 0, 1] = 1
+    after[(inner > 0) & (inner % 3 == 0), 1] = 2
+    after[first[1:] - 1, 1] = 3
+    return bytes(words.text(numbers.ravel(), after.ravel(), [b" ", b" m\n", b" c\n", b" c f\n"], DECIMALS))
 
 
 def _pens(pens: np.ndarray) -> list[bytes]:

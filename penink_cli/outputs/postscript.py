@@ -9,6 +9,8 @@ kind stand together in arrays of numbers, and a short procedure per kind draws a
     {dx dy u v p q …} k b    segments that bend: control points at a third and two thirds of
                              the way, p and p + q to the left of it
     {dx dy x1 y1 x2 y2 x3 y3 …} k c   any Bézier segments
+    {dx dy w k u v p q dw …} t   strokes that swell: each of k segments that bend, w the width at
+                             the beginning and dw what a segment adds, in eighths of a unit
 
 dx dy leads from the last stroke's end to the beginning. The position is kept in whole numbers,
 so nothing drifts. The ink of a layer has one colour, so its strokes may be drawn in any order: one
@@ -26,7 +28,7 @@ import numpy.typing as npt
 
 from penink_cli.formats.strokes import Sink
 from penink_cli.ground.model import Floats, Ints, Strokes
-from penink_cli.outputs import words
+from penink_cli.outputs import swelling, words
 from penink_cli.outputs.page import Page, ink_box
 
 UNITS = 20  # a point: an eighth of a 0.4 pt pen
@@ -38,7 +40,7 @@ SEGMENT = {"d": 0, "l": 2, "b": 4, "c": 6}  # numbers a segment, by the kind of 
 # e: dx dy, a new position; m: the same, and a path begins there; a: {…} k n, does `p` (set before)
 # with the n numbers of each segment of each stroke.
 PROLOG = b"""\
-/penink 24 dict def
+/penink 80 dict def
 penink begin
 /x 0 def /y 0 def
 /w {setlinewidth} bind def
@@ -61,6 +63,41 @@ penink begin
   u 3 div v s mul sub v 3 div u s mul add
   u 1.5 div v r mul sub v 1.5 div u r mul add
   u v rcurveto u v e} def 4 a} bind def
+"""
+# Strokes that swell are filled: in one path a shape a segment, between its two sides, and a disc at both ends. Where
+# shapes meet they have an edge in common. The sides are those of `swelling`, but at right angles to the curve: from
+# x + X, y + Y to x + u + U, y + v + V on the left, and on the right from x + u − U … back. h and Z are the radius at
+# both ends, i j and f g a third of the directions there, H and J what the bend takes from the control points' lean.
+# O: x y, a disc. P: a b, at least 0 of a - b.
+SWELLING = b"""\
+/O {h 0 gt {2 copy exch h add exch moveto h 360 0 arcn closepath} {pop pop} ifelse} bind def
+/P {sub dup 0 lt {pop 0} if} bind def
+/t {cvlit /A exch def /I 0 def {
+  I A length ge {exit} if
+  A I 4 getinterval aload pop /K exch def 16 div /h exch def e /I I 4 add def
+  x y O /X null def
+  K {A I 5 getinterval aload pop 16 div /D exch def /q exch def /p exch def /v exch def /u exch def /I I 5 add def
+   u u mul v v mul add sqrt /L exch def /s p L div def /r p q add L div def
+   /i u 3 div v s mul sub def /j v 3 div u s mul add def
+   /f u 3 div v r mul add def /g v 3 div u r mul sub def
+   /M u i sub f sub def /N v j sub g sub def
+   /S i i mul j j mul add sqrt def /T f f mul g g mul add sqrt def
+   X null eq {/X j S div h mul neg def /Y i S div h mul def} if
+   /Z h D add def /D D 3 div def
+   /U g T div Z mul neg def /V f T div Z mul def
+   /H i N mul j M mul sub S div S div S div h mul 1.5 div def
+   /J M g mul N f mul sub T div T div T div Z mul 1.5 div def
+   /B D j mul S div def /C D i mul S div def /E D g mul T div def /G D f mul T div def
+   x X add y Y add moveto
+   1 H P dup i mul x add X add B sub exch j mul y add Y add C add
+   1 J P dup f mul u U add x add exch sub E add exch g mul v V add y add exch sub G sub
+   u U add x add v V add y add curveto
+   u U sub x add v V sub y add lineto
+   1 J neg P dup f mul u U sub x add exch sub E sub exch g mul v V sub y add exch sub G add
+   1 H neg P dup i mul x add X sub B add exch j mul y add Y sub C sub
+   x X sub y Y sub curveto closepath
+   u v e /X U def /Y V def /h Z def} repeat
+  x y O fill} loop} bind def
 """
 FLATE = b"/z {/F currentfile /ASCII85Decode filter def F /FlateDecode filter cvx exec F flushfile} bind def\n"
 
@@ -132,6 +169,8 @@ def _write_head(out: Sink, layers: Sequence[Strokes], page: Page, compress: bool
         out.write(b"%%%%DocumentMedia: %s %s %s 0 () ()\n" % (page.paper.encode("ascii"), *size))
     out.write(b"%%EndComments\n%%BeginProlog\n")
     out.write(PROLOG)
+    if any(s.knot_widths is not None for s in layers):
+        out.write(SWELLING)
     if compress:
         out.write(FLATE)
     out.write(b"end\n%%EndProlog\n")
@@ -153,6 +192,11 @@ def _body(
     """The arrays of one layer, beginning with the pen at ``at``, and where it is left."""
     parts: list[bytes] = []
     pen = 0.0
+    swells = strokes.swells
+    if swells.any():
+        numbers, first, at = _swelling(strokes.taken(swells), units, at, order)
+        parts += [b"{", bytes(_ragged(numbers, first))]
+        strokes = strokes.taken(~swells)
     for kind, k, group in _groups(_split(strokes), units):
         if group.widths[0] != pen:
             pen = group.widths[0]
@@ -178,6 +222,58 @@ def _arrays(rows: Ints, step: int, call: bytes) -> memoryview:
     after[every - 1 :: every, -1] = 2
     after[-1, -1] = 3
     return words.text(rows.ravel(), after.ravel(), [b" ", b"\n", call + b"{", call])
+
+
+def _swelling(
+    strokes: Strokes, units: int, at: tuple[int, int], order: Callable[[Strokes], Strokes]
+) -> tuple[Ints, Ints, tuple[int, int]]:
+    """The numbers of strokes that swell, where each stroke's begin, and where the last one ends."""
+
+    def plain(points: Floats) -> npt.NDArray[np.bool_]:
+        return (_bends(points * units)[1] < 3) | (np.hypot(*(points[:, 3] - points[:, 0]).T) * units < 8)
+
+    strokes = order(swelling.pieces(strokes, plain, CHAIN))
+    segments = np.diff(strokes.first) // 3
+    knots = words.whole(strokes.points[_knot_places(strokes)] * (units, -units))
+    widths = words.whole(strokes.at_knots * (8 * units))
+    starts = strokes.knots[:-1]
+    ways = np.diff(knots, axis=0, prepend=0)
+    kept = (ways != 0).any(axis=1)  # a segment that goes nowhere is left out
+    kept[starts] = True
+    number = np.flatnonzero(kept)
+    owner = np.repeat(np.arange(len(strokes)), segments + 1)[number]
+    begins = np.concatenate([[True], owner[1:] != owner[:-1]])
+    rows = np.zeros((len(number), 5), np.int64)
+    rows[:, :2] = np.diff(knots[number], axis=0, prepend=[at])
+    rows[:, 4] = np.diff(widths[number], prepend=0)
+    after = number[~begins]
+    into = _knot_places(strokes)[after]
+    exact = strokes.points[into[:, None] + np.arange(-3, 1)] * (units, -units)
+    rows[~begins, 2:4], _ = _bends(exact)
+    rows[begins, 2] = widths[number[begins]]
+    rows[begins, 3] = np.bincount(owner, minlength=len(strokes)) - 1
+    used = np.ones(rows.shape, bool)
+    used[begins, 4] = False
+    first = np.append(np.cumsum(used.sum(axis=1))[begins] - 4, used.sum())
+    x, y = knots[-1].tolist()
+    return rows[used], first, (x, y)
+
+
+def _knot_places(strokes: Strokes) -> Ints:
+    """Where the knots are among the points."""
+    segments = np.diff(strokes.first) // 3
+    return np.repeat(strokes.first[:-1] - 3 * strokes.knots[:-1], segments + 1) + 3 * np.arange(strokes.knots[-1])
+
+
+def _ragged(numbers: Ints, first: Ints) -> memoryview:
+    """Numbers of strokes as arrays of some 400, a line ending after every stroke or 50 numbers."""
+    after = np.zeros(len(numbers), np.int32)
+    after[np.arange(49, len(numbers), 50)] = 1
+    after[first[1:] - 1] = 1
+    full = np.diff(first[1:] // NUMBERS, append=-1) != 0
+    after[(first[1:] - 1)[full]] = 2
+    after[-1] = 3
+    return words.text(numbers, after, [b" ", b"\n", b"}t\n{", b"}t\n"])
 
 
 def _groups(strokes: Strokes, units: int) -> Iterator[tuple[str, int, Strokes]]:

@@ -1,4 +1,4 @@
-"""Strokes as SVG, in millimetres, a path each.
+"""Strokes as SVG, in millimetres, a path each; of strokes that swell the outline.
 
 Layers are groups that Inkscape shows as layers. Their labels begin with their number, as vpype
 and AxiDraw take the first digits of a label for the layer's number.
@@ -12,8 +12,8 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 
 from penink_cli.formats.strokes import Sink
-from penink_cli.ground.model import Strokes
-from penink_cli.outputs import words
+from penink_cli.ground.model import Floats, Ints, Strokes
+from penink_cli.outputs import swelling, words
 from penink_cli.outputs.page import Page
 
 MM = 25.4 / 72
@@ -34,15 +34,23 @@ def write(
     for i, layer in enumerate(layers):
         label = f"{i + 1} {_xml(layer.layer)}" if layer.layer else f"{i + 1}"
         red, green, blue = colours[i] if i < len(colours) else (0.0, 0.0, 0.0)
+        colour = f"#{_hex(red)}{_hex(green)}{_hex(blue)}"
+        swells = layer.swells
+        layer, wide = (layer.taken(~swells), layer.taken(swells)) if swells.any() else (layer, None)
         pens, counts = np.unique(layer.widths, return_counts=True)
         pen = float(pens[np.argmax(counts)]) if len(pens) else 1.0
         out.write(
             f'<g id="layer{i + 1}" inkscape:groupmode="layer" inkscape:label={quoteattr(label)}\n'
-            f'   fill="none" stroke="#{_hex(red)}{_hex(green)}{_hex(blue)}" stroke-width="{_number(pen * MM, 4)}" '
+            f'   fill="none" stroke="{colour}" stroke-width="{_number(pen * MM, 4)}" '
             'stroke-linecap="round" stroke-linejoin="round">\n'.encode()
         )
         for start in range(0, len(layer), BATCH):
             out.write(_paths(layer, start, min(start + BATCH, len(layer)), page, pen))
+        if wide is not None:
+            out.write(f'<g fill="{colour}" stroke="none">\n'.encode())
+            for start in range(0, len(wide), BATCH):
+                out.write(_outlines(wide.taken(np.arange(start, min(start + BATCH, len(wide)))), page))
+            out.write(b"</g>\n")
         out.write(b"</g>\n")
     out.write(b"</svg>\n")
 
@@ -51,22 +59,38 @@ def _paths(layer: Strokes, start: int, stop: int, page: Page, usual: float) -> m
     """Strokes start … stop - 1, each a path: M x y and cubic segments relative to where they begin."""
     first = layer.first[start : stop + 1] - layer.first[start]
     counts = np.diff(first)
-    points = layer.points[layer.first[start] : layer.first[stop]] + np.array((page.x, page.y))
-    grid = words.whole(points * (MM * 10**DECIMALS))
-    inner = np.arange(len(grid)) - np.repeat(first[:-1], counts)
-    origin = np.arange(len(grid)) - np.where(inner > 0, (inner - 1) % 3 + 1, 0)
-    numbers = np.where((inner > 0)[:, None], grid - grid[origin], grid)
+    numbers = _relative(layer.points[layer.first[start] : layer.first[stop]], first, page)
     pens, pen = np.unique(layer.widths[start:stop], return_inverse=True)
     begin = b'<path d="M'
     ends = [b"" if p == usual else b' stroke-width="%s"' % _number(p * MM, 4).encode() for p in pens.tolist()]
     # A dot is a line of a micrometre: one without length is not drawn by all, and dropped by vpype.
     lines = [b'"%s/>\n%s' % (end, begin) for end in ends]
     table = [b" ", b"c", begin, *lines, *(b"h.001" + line for line in lines)]
-    after = np.zeros((len(grid), 2), np.int32)
+    after = np.zeros((len(numbers), 2), np.int32)
     after[first[:-1], 1] = 1
     after[first[1:] - 1, 1] = 3 + pen + np.where(counts == 1, len(ends), 0)
     body = words.text(numbers.ravel(), after.ravel(), table, DECIMALS)
     return memoryview(begin + bytes(body[: len(body) - len(begin)]))
+
+
+def _outlines(strokes: Strokes, page: Page) -> memoryview:
+    """The outlines of strokes that swell, a path each: so filled, by either rule, they are the strokes."""
+    points, first = swelling.outlines(strokes)
+    numbers = _relative(points, first, page)
+    begin = b'<path d="M'
+    after = np.zeros((len(numbers), 2), np.int32)
+    after[first[:-1], 1] = 1
+    after[first[1:] - 1, 1] = 2
+    body = words.text(numbers.ravel(), after.ravel(), [b" ", b"c", b'z"/>\n' + begin], DECIMALS)
+    return memoryview(begin + bytes(body[: len(body) - len(begin)]))
+
+
+def _relative(points: Floats, first: Ints, page: Page) -> Ints:
+    """Points (p, 2) of chains in whole 10^-DECIMALS mm on the page: segments relative to where they begin."""
+    grid = words.whole((points + np.array((page.x, page.y))) * (MM * 10**DECIMALS))
+    inner = np.arange(len(grid)) - np.repeat(first[:-1], np.diff(first))
+    origin = np.arange(len(grid)) - np.where(inner > 0, (inner - 1) % 3 + 1, 0)
+    return np.where((inner > 0)[:, None], grid - grid[origin], grid)
 
 
 def _xml(name: str) -> str:

@@ -45,3 +45,27 @@ def every_kind():
     chains = [*straight, loop, cusp, back, spiral, zigzag, over, *dots, nothing]
     pens = np.array([0.4, 1, 2.5, 0.25])[np.arange(len(chains)) % 4]
     return strokes_of(chains, pens, layer="Every kind")
+
+
+def swelling():
+    """Strokes whose width changes: wavy lines as an engraver's, a taper, a corner, a hairpin, a loop, tangles."""
+    rng = np.random.default_rng(2)
+    lines, widths = [], []
+    t = np.linspace(0, 1, 3 * 16 + 1)
+    for i in range(16):
+        lines.append(np.stack([8 + 128 * t, 8 + 4 * i + 3 * np.sin(6 * t + i / 5)], axis=1))
+        widths.append(np.clip(1.5 + 1.6 * np.sin(np.arange(17) / 2.5 + i / 3), 0, 3))
+    lines += [
+        [[10, 90], [20, 86], [30, 86], [40, 90]],  # a taper
+        [[50, 90], [53, 90], [57, 90], [60, 90], [60, 93], [60, 97], [60, 100]],  # a corner
+        [[70, 88], [76, 88], [76, 92], [70, 92]],  # a hairpin
+        [[80, 80], [120, 120], [120, 70], [85, 100]],  # a loop
+        [[120, 90]] * 4,  # goes nowhere
+        [[120, 110], [120, 110], [130, 110], [130, 110]],  # slow at its ends
+        [[10, 120], [10.2, 120], [10.4, 120], [10.6, 120]],  # shorter than it is wide
+    ]
+    widths += [[3, 0], [3, 4, 2], [4, 6], [1, 5], [1, 3], [6, 1], [5, 0]]
+    for _ in range(12):
+        lines.append(np.cumsum(rng.normal(0, 2, (3 * 4 + 1, 2)), axis=0) + rng.uniform(100, 130, 2))
+        widths.append(rng.uniform(0, 2, 5))
+    return Strokes.of(144, 144, lines, widths)

@@ -2,6 +2,7 @@
 
 import io
 import json
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from PIL import Image
 
 from penink_cli.outputs.page import Page, lay_out
 from penink_cli.outputs.raster import cover, png
-from tests.outputs.drawings import crosshatch, every_kind, strokes_of
+from tests.outputs.drawings import crosshatch, every_kind, strokes_of, swelling
 from tests.outputs.rendering import difference, ghostscript, pixels
 
 
@@ -29,13 +30,14 @@ def oracle(drawing, dpi, fine=16):
     y, x = (np.mgrid[: h * fine, : w * fine] + 0.5) * (72 / dpi / fine)
     inked = np.zeros(x.shape, bool)
     t = np.linspace(0, 1, 400)[:, None]
-    for i, pen in enumerate(drawing.widths):
-        points = drawing[i]
+    for i in range(len(drawing)):
+        points, widths = drawing[i], drawing.at_knots[drawing.knots[i] : drawing.knots[i + 1]]
         pieces = [
             (1 - t) ** 3 * a + 3 * (1 - t) ** 2 * t * b + 3 * (1 - t) * t**2 * c + t**3 * d
             for a, b, c, d in (points[k : k + 4] for k in range(0, len(points) - 1, 3))
         ]
-        for px, py in np.concatenate(pieces) if pieces else points:
+        pens = np.concatenate([(1 - t) * a + t * b for a, b in pairwise(widths)])[:, 0] if pieces else widths
+        for (px, py), pen in zip(np.concatenate(pieces) if pieces else points, pens):
             inked |= (x - px) ** 2 + (y - py) ** 2 <= pen * pen / 4
     return 255 * (1 - inked.reshape(h, fine, w, fine).mean(axis=(1, 3)))
 
@@ -55,9 +57,12 @@ coordinate = st.floats(-3, 15)
         max_size=3,
     ),
     st.floats(0.2, 4),
+    st.none() | st.floats(0, 4),
 )
-def test_against_the_slow_way(chains, pen):
+def test_against_the_slow_way(chains, pen, end):
     drawing = strokes_of(chains, pen, 12, 9)
+    if end is not None:  # the strokes swell
+        drawing = drawing.swelling(np.where(np.isin(np.arange(len(drawing.at_knots)), drawing.knots), pen, end))
     ours, slow = picture([drawing], 72).astype(float), oracle(drawing, 72)
     assert np.abs(ours - slow).max() <= 14  # of 255: the oracle's curves are beads on a string
     assert abs(ours.mean() - slow.mean()) <= 1.5
@@ -78,7 +83,7 @@ def test_a_bar_covers_what_it_covers():
 
 @pytest.mark.parametrize("dpi", [10, 100, 333])
 def test_any_number_of_threads_and_height_of_bands_gives_the_same_pixels(monkeypatch, dpi):
-    layers = [every_kind(), crosshatch(300, 144)]
+    layers = [every_kind(), crosshatch(300, 144), swelling()]
     expected = picture(layers, dpi)
     for threads in (2, 3, 8):
         assert np.array_equal(picture(layers, dpi, threads=threads), expected)

@@ -6,6 +6,7 @@ import math
 from collections import deque
 from collections.abc import Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
@@ -32,14 +33,13 @@ def bands(layers: Sequence[Strokes], page: Page, dpi: float, maxval: int, thread
     """
     width, height = size(page, dpi)
     scale = dpi / 72
-    points = np.concatenate([(s.points + np.array((page.x, page.y))) * scale for s in layers])
-    offsets = np.cumsum([0, *(len(s.points) for s in layers)])
-    first = np.concatenate([s.first[:-1] + at for s, at in zip(layers, offsets)] + [offsets[-1:]])
-    radii = np.concatenate([s.widths * (scale / 2) for s in layers])
+    drawn = Strokes.joined([replace(s, points=(s.points + np.array((page.x, page.y))) * scale) for s in layers])
+    points, first, radii = drawn.points, drawn.first, drawn.widths * (scale / 2)
+    knot_radii = np.zeros(0) if drawn.knot_widths is None else drawn.knot_widths * (scale / 2)
     greys = np.rint(maxval * (1 - np.arange(257) / 256)).astype(np.uint8)
     padded = -(-width // 4) * 4
     rows = min(max(ROOM // (32 * padded), 1), 64, height)
-    members, starts = _members(points, first, radii, rows, -(-height // rows))
+    members, starts = _members(points, first, drawn.widest * (scale / 2), rows, -(-height // rows))
 
     def draw(number: int) -> Band:
         top = number * rows
@@ -49,7 +49,7 @@ def bands(layers: Sequence[Strokes], page: Page, dpi: float, maxval: int, thread
             out[:] = maxval
             return out
         bits = np.empty((16 * len(out), padded), np.uint16)
-        _cover.band(points, first, radii, chosen, top, bits, np.empty(padded // 4, np.uint64), greys, out)
+        _cover.band(points, first, radii, knot_radii, chosen, top, bits, np.empty(padded // 4, np.uint64), greys, out)
         return out
 
     numbers = range(-(-height // rows))

@@ -6,12 +6,12 @@ can. A point is inked if it lies in a stroke. 256 points are as many as 8-bit gr
 a crosshatch at 150 dpi the low-passed picture differs from one of 64 × 64 points by 0.01 % RMS.
 
 A Bézier segment is cut into straight pieces that leave it by at most 1/50 pixel, and the ink of
-a piece is a capsule: what lies within half a pen's width of it. Capsules are convex, so each row
-of points meets one in one span, found without rounding error that matters: between the two long
-sides where the row crosses both, else between the outermost of sides and round ends.
+a piece is a capsule: what lies within half a pen's width of it, which may grow on the way. Capsules
+are convex, so each row of points meets one in one span, found without rounding error that matters:
+between the two long sides where the row crosses both, else between the outermost of sides and round ends.
 """
 
-from libc.math cimport sqrt
+from libc.math cimport fabs, sqrt
 
 STEPS = 16
 cdef double FLAT = 0.02
@@ -112,12 +112,74 @@ cdef void _capsule(
         j += 1
 
 
-cdef void _segment(
-    unsigned short* bits, Py_ssize_t width, double top, long long rows, const double* p, double r
+cdef void _cone(
+    unsigned short* bits, Py_ssize_t width, double top, long long rows,
+    double ax, double ay, double bx, double by, double ra, double rb,
 ) noexcept nogil:
-    """Ink one Bézier segment with the control points p[0] … p[7]."""
+    """Ink what a disc covers on its way from a to b while its radius goes from ra to rb: the hull of both discs."""
+    cdef double dx = bx - ax
+    cdef double dy = by - ay
+    cdef double length = sqrt(dx * dx + dy * dy)
+    cdef double y, half, left, right, x, lean, across, from_row, to_row
+    cdef long long j = 0, end, most = 16 * width - 1
+    cdef int side
+    # the two long sides, from s to e, touch the discs at ra · m and rb · m, m the unit vector at right angles to them
+    cdef double[2] sx, sy, ex, ey
+    if ra == rb or length <= fabs(ra - rb):
+        if length > fabs(ra - rb):
+            _capsule(bits, width, top, rows, ax, ay, bx, by, ra)
+        elif ra > rb:  # one disc holds the other
+            _capsule(bits, width, top, rows, ax, ay, ax, ay, ra)
+        else:
+            _capsule(bits, width, top, rows, bx, by, bx, by, rb)
+        return
+    from_row = (min(ay - ra, by - rb) - top) * 16.0 - 0.5
+    to_row = (max(ay + ra, by + rb) - top) * 16.0 - 0.5
+    if to_row < 0.0 or from_row > rows - 1 or max(ax + ra, bx + rb) < 0.0 or min(ax - ra, bx - rb) > width:
+        return
+    if from_row > 0.0:
+        j = <long long>from_row
+    end = rows - 1 if to_row >= rows - 1 else <long long>to_row
+    lean = (ra - rb) / length
+    across = sqrt(1.0 - lean * lean)
+    for side in range(2):
+        x = (lean * dx + across * dy) / length
+        y = (lean * dy - across * dx) / length
+        sx[side] = ax + ra * x
+        sy[side] = ay + ra * y
+        ex[side] = bx + rb * x
+        ey[side] = by + rb * y
+        across = -across
+    while j <= end:
+        y = top + (j + 0.5) / 16.0
+        left = 1e300
+        right = -1e300
+        half = ra * ra - (y - ay) * (y - ay)
+        if half >= 0.0:
+            half = sqrt(half)
+            left = ax - half
+            right = ax + half
+        half = rb * rb - (y - by) * (y - by)
+        if half >= 0.0:
+            half = sqrt(half)
+            left = min(left, bx - half)
+            right = max(right, bx + half)
+        for side in range(2):
+            if sy[side] != ey[side] and min(sy[side], ey[side]) <= y <= max(sy[side], ey[side]):
+                x = sx[side] + (y - sy[side]) * ((ex[side] - sx[side]) / (ey[side] - sy[side]))
+                left = min(left, x)
+                right = max(right, x)
+        if left <= right:
+            _span(bits + j * width, left, right, most)
+        j += 1
+
+
+cdef void _segment(
+    unsigned short* bits, Py_ssize_t width, double top, long long rows, const double* p, double r, double end_r
+) noexcept nogil:
+    """Ink one Bézier segment with the control points p[0] … p[7], of radius r at its start and end_r at its end."""
     cdef int k
-    cdef double t, s, bx, by
+    cdef double t, s, bx, by, last
     cdef double ux = p[0] - 2.0 * p[2] + p[4]
     cdef double uy = p[1] - 2.0 * p[3] + p[5]
     cdef double vx = p[2] - 2.0 * p[4] + p[6]
@@ -135,25 +197,30 @@ cdef void _segment(
         s = 1.0 - t
         bx = s * s * s * p[0] + 3.0 * s * s * t * p[2] + 3.0 * s * t * t * p[4] + t * t * t * p[6]
         by = s * s * s * p[1] + 3.0 * s * s * t * p[3] + 3.0 * s * t * t * p[5] + t * t * t * p[7]
-        _capsule(bits, width, top, rows, ax, ay, bx, by, r)
+        if r == end_r:
+            _capsule(bits, width, top, rows, ax, ay, bx, by, r)
+        else:
+            last = r + (end_r - r) * (<double>(k - 1) / pieces)
+            _cone(bits, width, top, rows, ax, ay, bx, by, last, r + (end_r - r) * t)
         ax = bx
         ay = by
 
 
 def band(
-    const double[:, ::1] points, const long long[::1] first, const double[::1] radii, const int[::1] members,
-    Py_ssize_t top, unsigned short[:, ::1] bits, unsigned long long[::1] counts, const unsigned char[::1] greys,
+    const double[:, ::1] points, const long long[::1] first, const double[::1] radii, const double[::1] knot_radii,
+    const int[::1] members, Py_ssize_t top, unsigned short[:, ::1] bits, unsigned long long[::1] counts, const unsigned char[::1] greys,
     unsigned char[:, ::1] out,
 ) -> None:
     """Draw the strokes `members` into the pixel rows from `top` on.
 
-    points in pixels, radii half the pens' widths. bits (16 · rows, w), w the width rounded up to a multiple
-    of 4, and counts (w / 4,) are room to work in. greys (257,) maps inked points to the value stored in
-    out (rows, width).
+    points in pixels, radii half the pens' widths; knot_radii those at all knots, or empty where no stroke swells.
+    bits (16 · rows, w), w the width rounded up to a multiple of 4, and counts (w / 4,) are room to work in.
+    greys (257,) maps inked points to the value stored in out (rows, width).
     """
     cdef unsigned long long* four
     cdef unsigned long long x
-    cdef Py_ssize_t i, j, k, sub, stroke
+    cdef Py_ssize_t i, j, k, sub, stroke, knot
+    cdef double r, end_r
     cdef Py_ssize_t rows = out.shape[0]
     cdef Py_ssize_t width = bits.shape[1]
     cdef Py_ssize_t words = width // 4
@@ -170,9 +237,15 @@ def band(
                 _capsule(
                     room, width, top, 16 * rows, points[k, 0], points[k, 1], points[k, 0], points[k, 1], radii[stroke]
                 )  # fmt: skip
+            knot = (k + 2 * stroke) // 3
+            r = end_r = radii[stroke]
             while k + 3 < first[stroke + 1]:
-                _segment(room, width, top, 16 * rows, &points[k, 0], radii[stroke])
+                if knot_radii.shape[0] > 0:
+                    r = knot_radii[knot]
+                    end_r = knot_radii[knot + 1]
+                _segment(room, width, top, 16 * rows, &points[k, 0], r, end_r)
                 k += 3
+                knot += 1
         for j in range(rows):
             # Bits set in each byte of four pixels at a time; 16 rows of up to 8 fit into a byte.
             for k in range(words):
