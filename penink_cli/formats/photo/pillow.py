@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 SHOWN = {"WEBP": "WebP"}
 RUN = 1 << 12  # pixels that a byte of a squeezed BMP, or of a GIF, can make at the most, and some
-PART = 16  # of a BMP at least one in so many bytes must be there for its rest to be read
+PART = 16  # at least one in so many of a picture's bytes must be there for what is left of it to be read
 
 
 @contextlib.contextmanager

@@ -17,13 +17,14 @@ from penink_cli.formats.photo import jpeg
 from penink_cli.formats.photo.choices import Verdict
 from penink_cli.formats.photo.decoded import Decoded
 from penink_cli.formats.photo.icc import MOST, profile_of
-from penink_cli.formats.photo.pillow import decoded, with_meaning
+from penink_cli.formats.photo.pillow import PART, decoded, with_meaning
 from penink_cli.ground.errors import FormatError
 
 SIZES = {1: 1, 2: 1, 3: 2, 4: 4, 5: 8, 6: 1, 7: 1, 8: 2, 9: 4, 10: 8, 11: 4, 12: 8, 13: 4, 16: 8, 17: 8, 18: 8}
 WHOLE = {1: "B", 3: "H", 4: "I", 13: "I", 16: "Q", 18: "Q"}  # types that are whole numbers
 REDUCED, WIDTH, HEIGHT, BITS, COMPRESSION, PHOTOMETRIC = 254, 256, 257, 258, 259, 262
 STRIPS, ORIENTATION, COUNTS, PLANES, OLD_KIND, OTHERS = 273, 274, 279, 284, 255, 330
+SAMPLES, ROWS, TILE_WIDTH, TILE_HEIGHT, TILES, TILE_COUNTS = 277, 278, 322, 323, 324, 325
 JPEG_AT, JPEG_BYTES, ICC, DNG = 513, 514, 34675, 50706
 PIXELS = (
     {WIDTH, HEIGHT, BITS, COMPRESSION, PHOTOMETRIC, 266, STRIPS, 277, 278, COUNTS, PLANES, 292, 293, 317, 320}
@@ -212,15 +213,39 @@ def _alike(a: _Directory, b: _Directory) -> bool:
 
 
 def _check_pixels(encoded: bytes, chosen: _Directory, order: str, big: bool, verdict: Verdict) -> None:
-    """Raise FormatError where the file ends before its pixels do."""
-    for places, counts in ((STRIPS, COUNTS), (324, 325)):
-        if places in chosen.entries and counts in chosen.entries:
-            at, length = (_numbers(encoded, chosen.entries[tag], order, big) for tag in (places, counts))
-            pieces = min(len(at), len(length))
-            needed = int((at[:pieces] + length[:pieces]).max()) if pieces else 0
-            if needed > len(encoded):
-                verdict.damage(FormatError(f"truncated: {len(encoded)} of at least {needed} TIFF bytes"))
-                return
+    """Raise FormatError where the file ends before its pixels do, or where strips or tiles of them are missing.
+
+    Pillow is content with those that there are. Where next to nothing is there, nothing is left to be read.
+    """
+    tiled = TILES in chosen.entries
+    places, counts = (TILES, TILE_COUNTS) if tiled else (STRIPS, COUNTS)
+    if places not in chosen.entries or counts not in chosen.entries or not chosen.area:
+        return
+    at, length = (_numbers(encoded, chosen.entries[tag], order, big) for tag in (places, counts))
+    there = min(len(at), len(length))
+    rows = chosen.one(TILE_HEIGHT if tiled else ROWS) or chosen.height
+    needed = _up(chosen.height, rows) * (_up(chosen.width, chosen.one(TILE_WIDTH) or chosen.width) if tiled else 1)
+    if chosen.one(PLANES) == 2:
+        needed *= chosen.one(SAMPLES, 1)
+    ends = int((at[:there] + length[:there]).max()) if there else 0
+    bits = (chosen.values.get(BITS) or (1,))[0] * chosen.one(SAMPLES, 1)
+    size = _up(chosen.width * bits, 8) * chosen.height if chosen.one(COMPRESSION, 1) == 1 else 0
+    for found, wanted, what in (
+        (there, needed, "tiles" if tiled else "strips"),
+        (len(encoded), ends, "TIFF bytes"),
+        (min(int(length.sum()), len(encoded)), size, "bytes of pixels"),
+    ):
+        if found < wanted:
+            error = FormatError(f"truncated: {found} of at least {wanted} {what}")
+            if PART * found < wanted:
+                raise error
+            verdict.damage(error)
+            return
+
+
+def _up(number: int, step: int) -> int:
+    """How many steps reach the number."""
+    return -(-number // step)
 
 
 def _numbers(encoded: bytes, entry: tuple[int, int, bytes], order: str, big: bool) -> np.ndarray:
