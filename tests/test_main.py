@@ -6,6 +6,7 @@ import importlib
 import os
 import subprocess
 import sys
+import time
 
 import click
 import pytest
@@ -171,3 +172,41 @@ def test_sizes(text):
 def test_sizes_that_are_none(text):
     with pytest.raises(click.BadParameter):
         options.SIZE.convert(text, None, None)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "line"),
+    [
+        (["--self", "--paper", "a4"], "--paper is of strokes, and does not go with --self"),
+        (["--self", "--margin", "9"], "--margin is of strokes, and does not go with --self"),
+        (["--self", "--landscape"], "--landscape is of strokes, and does not go with --self"),
+        (["--self", "--colour", "red"], "--color is of strokes, and does not go with --self"),
+        (["--self", "--device-dpi", "300"], "--device-dpi is of strokes, and does not go with --self"),
+        (["--self", "--compress"], "--compress is of strokes, and does not go with --self"),
+        (["--level", "2"], "--level goes with --self"),
+        (["--readable"], "--readable goes with --self"),
+    ],
+    ids=lambda value: " ".join(value) if isinstance(value, list) else "",
+)  # fmt: skip
+def test_to_ps_takes_no_option_that_it_would_ignore(penink, arguments, line):
+    done = penink("to-ps", *arguments, input=b"")
+    assert done.returncode == 2 and line in done.stderr.decode()
+
+
+def test_a_sheet_is_limited_by_its_area_and_the_refusal_is_quick(penink, tmp_path):
+    tall = tmp_path / "tall.pgm"
+    tall.write_bytes(b"P5 1 300 255\n" + bytes(300))
+    began = time.monotonic()
+    done = penink("draw", "--width", "3in", tall)
+    assert done.returncode == 1 and b"3 \xc3\x97 900 in on paper needs 55987200 pixels; at most 50000000" in done.stderr
+    done = penink("blast", "--width", "1in", "--max-pixels", "1000", tall)
+    assert done.returncode == 1 and b"at most 1000 are allowed (--max-pixels)" in done.stderr
+    assert time.monotonic() - began < 20  # two starts of the interpreter, on a busy machine
+
+
+def test_a_drawing_too_thin_for_strokes_is_told(penink, tmp_path):
+    wide = tmp_path / "wide.pgm"
+    wide.write_bytes(b"P5 300 1 255\n" + bytes(300))
+    done = penink("draw", "--width", "3in", wide)
+    assert done.returncode == 0 and done.stderr.decode().count("\n") == 1
+    assert "the drawing is 216 × 0.72 pt" in done.stderr.decode()

@@ -27,6 +27,7 @@ _ALONE = 2.0  # times as steep as what is around: texture reaches 1.4 to 2, lett
 _BRIDGE = 0.4  # of that is enough for a chain that leads from a telling chain to another, or to the frame
 _LEAST_LENS = 0.32  # pixels
 _OWN = 1 / 12 + 1 / 3  # variance, pixels², of what a pixel's area and the central difference add to a blur
+_REACH, _BESIDE = 4.0, 1.5  # pixels along and beside an edge where its step is looked for at a vertex put there later
 _CAMERA_BLUR = 0.8  # pixels: pixel area, lens and the central difference, where nothing better is known
 
 
@@ -149,10 +150,40 @@ def _arrange(
     _planar.insert(arrangement, ends)
     simplify(arrangement, tolerance, width, height)
     step = np.concatenate([points.magnitude / steepness, np.zeros(len(places))])
-    settle(arrangement, step)
+    live = np.asarray(arrangement.live)[: len(ends)].astype(bool)
+    fresh = np.bincount(np.asarray(arrangement.ends)[live].ravel(), minlength=len(step)) == 0
+    known = np.where(fresh, 0.0, step)  # what settling takes for new vertices are points of elsewhere
+    settle(arrangement, known)
     live = np.asarray(arrangement.live)[: len(ends)].astype(bool)
     edges = np.asarray(arrangement.ends)[live].astype(np.int64)
-    strength = np.clip(step[edges].max(axis=1), 0, 1)
+    at_ends = known[edges]
+    for e, end in np.argwhere(fresh[edges]).tolist():
+        here, there = from_units(np.asarray(arrangement.vertices)[[edges[e, end], edges[e, 1 - end]]])
+        at_ends[e, end] = _step_beside(points, step, here, there)
+    for e in np.flatnonzero(at_ends.max(axis=1) == 0).tolist():
+        here, there = from_units(np.asarray(arrangement.vertices)[edges[e]])
+        at_ends[e] = _step_beside(points, step, here, there, _REACH)
+    strength = np.clip(at_ends.max(axis=1), 0, 1)
     used, edges = np.unique(edges, return_inverse=True)
     vertices = from_units(np.asarray(arrangement.vertices)[used])
     return EdgeList(width, height, vertices, edges.reshape(-1, 2), strength)
+
+
+def _step_beside(points: EdgePoints, step: Floats, here: Floats, there: Floats, beside: float = _BESIDE) -> float:
+    """The step of the edge point next to `here` among those on the edge from here to there; 0 where there are none."""
+    height, width = points.shape
+    along = there - here
+    length = max(float(np.hypot(*along)), 1e-9)
+    reach = min(length, _REACH)
+    centre = here + along * (0.5 * reach / length)
+    left, top = (int(v) for v in np.maximum(np.floor(centre - 0.5 * reach - beside), 0))
+    right, bottom = (int(v) for v in np.minimum(np.floor(centre + 0.5 * reach + beside) + 1, (width, height)))
+    near = points.index[top:bottom, left:right].ravel()
+    near = near[near >= 0]
+    if not len(near):
+        return 0.0
+    away = points.position[near] - here
+    forward = (away[:, 0] * along[0] + away[:, 1] * along[1]) / length
+    sideways = np.abs(away[:, 0] * along[1] - away[:, 1] * along[0]) / length
+    on = (sideways <= beside) & (forward >= -beside) & (forward <= length + beside)
+    return float(step[near[on]][np.argmin(np.abs(forward[on]))]) if on.any() else 0.0

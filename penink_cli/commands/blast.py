@@ -127,7 +127,7 @@ def blast(
     directions = read_directions(directions_file, wide, high, max_pixels)
     width_pt = width if width is not None else columns / (dpi or 1.0) * 72.0
     height_pt = width_pt * rows / columns
-    check_sheet(width_pt, height_pt)
+    check_sheet(width_pt, height_pt, max_pixels)
     ink = read_layers(ink_files) if ink_files else []
     tone = tone_curve(image, gamma)
     for line in warnings(tone, texture, pen, device_dpi):

@@ -174,7 +174,7 @@ def compose(
     only_one_standard_input(file, mask)
     picture = read_colours(file, max_pixels)
     rows, columns = picture.values.shape[:2]
-    check_sheet(width, width * rows / columns)
+    check_sheet(width, width * rows / columns, max_pixels)
     where = None if mask is None else read_photo(mask, max_pixels)
     choice = composition.Choice(width, strength, detail, mix, target, dpi / 72, vignette or 0.0)
     used = composition.narrow_range(picture)

@@ -96,7 +96,7 @@ def draw(
     photo = read_photo(file, max_pixels)
     rows, columns = photo.values.shape
     height = width * rows / columns
-    check_sheet(width, height)
+    check_sheet(width, height, max_pixels)
     if click.get_current_context().get_parameter_source("device_dpi") is ParameterSource.DEFAULT:
         device_dpi = None if ending in ON_SCREEN else PRINTER_DPI
     choice = None

@@ -73,7 +73,7 @@ def render(
     illustration = read_illustration(file, max_pixels)
     width_pt = width if width is not None else illustration.width * (scale or 1.0)
     height_pt = width_pt * illustration.height / illustration.width
-    check_sheet(width_pt, height_pt)
+    check_sheet(width_pt, height_pt, max_pixels)
     which = range(len(illustration.layers)) if chosen is None else [_number(illustration, chosen)]
     with progress(steps(illustration), "render", quiet) as advance:
         layers = layer_strokes(

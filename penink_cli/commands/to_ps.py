@@ -5,10 +5,14 @@ from __future__ import annotations
 from typing import Any
 
 import click
+from click.core import ParameterSource
 
 from penink_cli.ground.streams import writing
 from penink_cli.options.common import Finite, output_options
 from penink_cli.options.layers import colour_option, colours_of, files_argument, page_options, read_layers
+
+OF_STROKES = ("paper", "margin", "landscape", "colours", "device_dpi", "compress")
+OF_SELF = ("level", "readable")
 
 
 @click.command(name="to-ps")
@@ -58,6 +62,7 @@ def to_ps(
     penink blast --texture crosshatch --width 4in photo.pgm | penink to-ps -o photo.eps
     penink to-ps --paper a4 --margin 15mm photo.strokes.jsonl | lpr
     """
+    _refuse_what_is_ignored(self_drawing)
     if self_drawing:
         write_self_drawing(files, output, "readable" if readable else "flate" if level == "3" else "lzw", max_pixels)
         return
@@ -75,6 +80,16 @@ def to_ps(
     page, inks = lay_out(layers, paper, margin, landscape), colours_of(layers, colours)
     with writing(output, binary=False) as out:
         postscript.write(out, layers, page, inks, compress, order=partial(ordered, improve=False))
+
+
+def _refuse_what_is_ignored(self_drawing: bool) -> None:
+    """Raise UsageError for an option that says nothing with --self, or nothing without it."""
+    context = click.get_current_context()
+    for option in context.command.params:
+        given = option.name and context.get_parameter_source(option.name) is not ParameterSource.DEFAULT
+        if given and option.name in (OF_STROKES if self_drawing else OF_SELF):
+            why = "is of strokes, and does not go with --self" if self_drawing else "goes with --self"
+            raise click.UsageError(f"{option.opts[0]} {why}")
 
 
 def write_self_drawing(files: tuple[str, ...], output: str | None, packing: str, max_pixels: int) -> None:

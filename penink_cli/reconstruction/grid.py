@@ -105,6 +105,8 @@ def choose_grid(
         return max(1, round(width * side / long)), max(1, round(height * side / long))
 
     def attempt(side: int, view: _View) -> Grid:
+        if size(side)[0] > view.picture.shape[1] or size(side)[1] > view.picture.shape[0]:
+            view = exact  # a grid finer than what judges it could not be fitted
         key = side, view is exact
         if key not in tried:
             fit_to = photo if view is exact else view.picture
@@ -136,7 +138,10 @@ def choose_grid(
         side = serving(search(max(0.0, max_error**2 - unseen) ** 0.5, _FINER * side))
         chosen = attempt(side, exact)
     if chosen.error > max_error:
-        raise ParameterError(f"even {width} x {height} samples leave an error of {255 * chosen.error:.2f} of 255")
+        raise ParameterError(
+            f"even {width} x {height} samples leave an error of {255 * chosen.error:.2f} of 255; "
+            f"{255 * max_error:.2f} are allowed (--max-error)"
+        )
     return chosen
 
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import html
 import json
+import re
 from typing import Any
 
 from penink_cli.blasting.screens import Screen
@@ -37,7 +38,8 @@ def write(illustration: Illustration, title: str, readable: bool = False) -> byt
             f"document.body.append(script);\n"
             f"{call}bytes.subarray({len(code)}));\n}});"
         )
-    page = packer.source("page.html").replace("TITLE", html.escape(title)).replace("PROGRAM", script)
+    parts_of_page = {"TITLE": html.escape(title), "PROGRAM": script}  # in one go: either may hold the other's name
+    page = re.sub("|".join(parts_of_page), lambda found: parts_of_page[found[0]], packer.source("page.html"))
     return page.encode("utf-8")
 
 

@@ -106,3 +106,14 @@ def test_what_cannot_be_kept_is_an_error():
     noise = np.random.default_rng(1).random((40, 40)).astype(np.float32)
     with pytest.raises(ParameterError, match="even 40 x 40"):
         choose_grid(np.zeros((40, 40), np.float32), EdgeList(40, 40), 1e-4, photo=noise)
+
+
+def test_a_grid_may_be_finer_than_the_view_it_is_judged_by(monkeypatch):
+    """Where a large photo is so busy that no coarse grid serves."""
+    monkeypatch.setattr(grid, "_VIEW_PX", 500)
+    noise = np.random.default_rng(3).uniform(0, 1, (60, 90)).astype(np.float32)
+    edges = EdgeList(90, 60, np.array([[20.0, 20], [60, 40]]), np.array([[0, 1]]))
+    with pytest.raises(ParameterError, match=r"0\.50 are allowed \(--max-error\)"):
+        choose_grid(noise, edges, 0.5 / 255, photo=np.roll(noise, 7, axis=1))
+    chosen = choose_grid(noise, edges, 0.2, photo=noise)
+    assert chosen.samples.shape[1] > 30 and chosen.error <= 0.2

@@ -211,5 +211,11 @@ def test_nothing_complains_or_is_fetched(page):
     assert page.requests[0].startswith("file:")
 
 
+@pytest.mark.parametrize("title", ["PROGRAM", "TITLE", "the PROGRAM of TITLE"])
+def test_a_title_may_be_what_stands_for_it_in_the_page(title):
+    page = html.write(illustration(), title).decode()
+    assert f"<title>{title}</title>" in page and page.replace(title, "x") == html.write(illustration(), "x").decode()
+
+
 def test_titles_are_escaped():
     assert b"<title>A &lt;disc&gt;</title>" in html.write(illustration(), "A <disc>")
