@@ -11,7 +11,7 @@ from penink_cli.blasting import hatching, tile
 from penink_cli.blasting.sheet import Cells, Sheet, resample
 from penink_cli.blasting.threshold import blast_by_threshold
 from penink_cli.ground.errors import ParameterError
-from penink_cli.ground.model import Directions, EdgeList, Floats, Strokes, Texture
+from penink_cli.ground.model import Directions, EdgeList, Floats, Lines, Strokes, Texture
 
 #: The rules by which strokes are chosen.
 RULES = ("best", "strict", "threshold")
@@ -32,6 +32,7 @@ def blast(
     rule: str = "best",
     outlines: Strokes | None = None,
     directions: Directions | None = None,
+    lines: Lines | None = None,
     threads: int | None = None,
     tick: Callable[[], None] = lambda: None,
 ) -> Strokes:
@@ -46,6 +47,8 @@ def blast(
         illustration that draws itself does on a device. It knows no seed.
     outlines: strokes drawn already, whose ink counts; they are not among those returned.
     directions: a field along which hatching runs, in place of its layers' angles.
+    lines: telling lines of the picture: light ones are left out, and beside the dark ones, which are drawn already and
+        among the outlines, hatching keeps clear.
     tick: called now and then, `TICKS` times at the most.
 
     The width and density of strokes do not depend on the size of the sheet. Equal input gives equal strokes,
@@ -53,6 +56,11 @@ def blast(
     """
     if rule not in RULES:
         raise ParameterError(f"rule {rule!r}: known are {', '.join(RULES)}")
+    told = None
+    if lines is not None:
+        from penink_cli.blasting import telling  # needs the rooms of lines and composition
+
+        tone, told = telling.told(tone, width_pt, height_pt, lines, outlines, threads or 1)
     if rule == "threshold":
         strokes = blast_by_threshold(tone, width_pt, height_pt, edges, texture, pen_pt, device_dpi, outlines)
         tick()
@@ -63,7 +71,7 @@ def blast(
         hatching.draw_first(sheet, outlines)
     if rule == "best" and texture.layers:
         along = None if directions is None else field_at(sheet, directions, edges)
-        strokes = hatching.hatch_sheet(sheet, texture.layers, edges, gain, seed, pen_pt, tick, along)
+        strokes = hatching.hatch_sheet(sheet, texture.layers, edges, gain, seed, pen_pt, tick, along, told)
     else:
         enters = tile.thresholds(texture, gain)
         parts = tile.blast_tile(sheet, texture, edges, enters, seed, rule == "strict", pen_pt, tick)

@@ -15,6 +15,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
+import numpy.typing as npt
 
 from penink_cli.blasting import candidates, curves, thin, walls
 from penink_cli.blasting.form import Form
@@ -65,18 +66,20 @@ def hatch_sheet(
     pen_pt: float | None,
     tick: Callable[[], None],
     directions: tuple[Cells, Cells] | None = None,
+    told: npt.NDArray[np.bool_] | None = None,
 ) -> Strokes:
     """Strokes of all layers that give the sheet its tone, together with the ink that is there already.
 
     pen_pt: the one pen there is, which then also draws what else would be fine strokes, and is pressed evenly.
     directions: cosine and sine of twice the angle (rows, columns) along which strokes run, each layer turned from it;
         None for the layers' own angles.
+    told: for each cell, whether a telling line is drawn there: thin things are not drawn again.
     """
     borders = walls.build(edges, sheet, max(pen_pt or layer.pen_pt for layer in layers))
     pens = [pen_pt or layer.pen_pt for layer in layers]
     finest = pens if pen_pt else [min(pen, max(FINE * pen, FINE_DOTS * gain_pt)) for pen in pens]
     form = None if directions is None else Form(sheet, *directions, layers, borders)
-    along = thin.strokes_along(sheet, min(pens), min(pens) + MEAN * gain_pt, pen_pt is not None)
+    along = thin.strokes_along(sheet, min(pens), min(pens) + MEAN * gain_pt, pen_pt is not None, told)
     draw_first(sheet, along)
     wide = sheet.low_pass(sheet.tone)
     drawn_wide = sheet.low_pass(sheet.ink)
@@ -145,6 +148,7 @@ def draw_first(sheet: Sheet, strokes: Strokes) -> None:
 
 def paint(sheet: Sheet, strokes: Strokes) -> None:
     """Ink strokes on the sheet."""
+    strokes = strokes.by_segments()
     pieces = curves.pieces_of(strokes.points, strokes.first, candidates.STEP_PT)
     sheet.paint(curves.sample(strokes.points, strokes.first, pieces), strokes.widths)
 

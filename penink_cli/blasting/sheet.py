@@ -27,9 +27,9 @@ import numpy.typing as npt
 from penink_cli.blasting._compiled import ink as _ink
 from penink_cli.blasting._compiled import place as _place
 from penink_cli.blasting._compiled import press as _press
-from penink_cli.blasting.curves import Polylines
+from penink_cli.blasting.curves import Polylines, pieces_of, sample
 from penink_cli.blasting.low_pass import Cells, LowPass
-from penink_cli.ground.model import Floats, Ints
+from penink_cli.ground.model import Floats, Ints, Strokes
 
 CELL_PT = 0.96
 #: σ of the low-pass of what is due. Narrower than what the eye (and the measure) blurs,
@@ -254,6 +254,21 @@ class Sheet:
             return
         with ThreadPoolExecutor(self.threads) as pool:
             list(pool.map(work, items))
+
+
+def coverage(strokes: Strokes, rows: int, columns: int, wider_pt: float = 0.0) -> Cells:
+    """Coverage (rows, columns), 0 … 1, of the strokes' sheet by them, each so much wider."""
+    bits = np.zeros((rows, (columns + 7) // 8, 8), np.uint64)
+    out = np.zeros((rows, columns), np.float32)
+    if len(strokes):
+        strokes = strokes.by_segments()
+        scale = np.array([8.0 * columns / strokes.width, 8.0 * rows / strokes.height])
+        lines = sample(strokes.points, strokes.first, pieces_of(strokes.points, strokes.first, CELL_PT))
+        widths = (strokes.widths + wider_pt) * (float(scale[0] + scale[1]) / 2)
+        points = np.ascontiguousarray(lines.points * scale)
+        _ink.paint(bits, columns, points, lines.first, widths, 0.0, np.zeros(len(widths), np.int64))
+        _ink.cover(bits, out)
+    return out
 
 
 def coloured(batch: Ints, block: Ints) -> list[list[Ints]]:

@@ -138,12 +138,17 @@ def breadth(tone: Floats, where: Ints, nx: Floats, ny: Floats, cell_pt: float) -
     return float(np.mean(np.maximum(across - ground, 0.0).sum(axis=0) * 0.5 / np.maximum(1.0 - ground, 0.2))) * cell_pt
 
 
-def strokes_along(sheet: Sheet, pen_pt: float, painted_pt: float, fixed: bool) -> Strokes:
+def strokes_along(
+    sheet: Sheet, pen_pt: float, painted_pt: float, fixed: bool, told: npt.NDArray[np.bool_] | None = None
+) -> Strokes:
     """Strokes along each thin dark thing of the sheet: one, or several side by side where it is broader than a pen.
 
-    pen_pt: width of the strokes, the greatest unless `fixed`. painted_pt: how wide the device paints one.
+    pen_pt: width of the strokes, the greatest unless `fixed`. painted_pt: how wide the device paints one. told: where,
+    for each cell, a line is drawn already.
     """
     mask, contrast, nx, ny = crests(sheet.tone)
+    if told is not None:
+        mask &= ~told
     tone = sheet.tone.astype(np.float64)
     cell = np.array([sheet.width / sheet.columns, sheet.height / sheet.rows])
     parts: list[Floats] = []

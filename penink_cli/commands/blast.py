@@ -20,7 +20,7 @@ from penink_cli.options.common import (
     verbose_option,
     warn,
 )
-from penink_cli.options.inputs import only_one_standard_input, read_directions, read_edges, read_grey
+from penink_cli.options.inputs import only_one_standard_input, read_directions, read_edges, read_grey, read_lines
 from penink_cli.options.layers import read_layers
 from penink_cli.options.progress import progress
 from penink_cli.options.sheet import check_sheet
@@ -70,6 +70,13 @@ RULES = ("best", "strict", "threshold")
     help="A field of directions of the picture (see penink detect-directions): hatching runs along it.",
 )
 @click.option(
+    "--lines",
+    "lines_file",
+    type=click.Path(allow_dash=True),
+    metavar="FILE",
+    help="Telling lines of the picture: light ones are left out, and hatching keeps clear of dark ones (--ink).",
+)
+@click.option(
     "--ink",
     "ink_files",
     type=click.Path(allow_dash=True),
@@ -94,6 +101,7 @@ def blast(
     device_dpi: float | None,
     rule: str,
     directions_file: str | None,
+    lines_file: str | None,
     ink_files: tuple[str, ...],
     threads: int | None,
     quiet: bool,
@@ -118,13 +126,14 @@ def blast(
     if (width is None) == (dpi is None):
         raise click.UsageError("give one of --width and --dpi")
     piped_texture = texture_name if texture_name == "-" else None
-    only_one_standard_input(file, edges_file, directions_file, *ink_files, piped_texture)
+    only_one_standard_input(file, edges_file, directions_file, lines_file, *ink_files, piped_texture)
     texture = find_texture(texture_name)
     edges = read_edges(edges_file, max_pixels)
     image = read_grey(file, max_pixels)
     rows, columns = image.values.shape
     wide, high = (columns, rows) if edges is None else (edges.width, edges.height)
     directions = read_directions(directions_file, wide, high, max_pixels)
+    lines = read_lines(lines_file, image)
     width_pt = width if width is not None else columns / (dpi or 1.0) * 72.0
     height_pt = width_pt * rows / columns
     check_sheet(width_pt, height_pt, max_pixels)
@@ -147,6 +156,7 @@ def blast(
             rule=rule,
             outlines=Strokes.joined(ink) if ink else None,
             directions=directions,
+            lines=lines,
             threads=threads or processors(),
             tick=lambda: more(1),
         )

@@ -49,11 +49,12 @@ def lines(
     """Turn telling lines into pen strokes for one size on paper.
 
     The most telling first, as long as there is room around each: a stamp gets few, a poster many. Strokes swell
-    with the line and taper. Light lines are not drawn.
+    with the line and taper. Light lines are not drawn: `blast --lines`
+    leaves them out of the hatching.
 
     \b
     penink lines --width 6in photo.lines.json -o lines.strokes.jsonl
-    penink blast --width 6in --ink lines.strokes.jsonl photo.pgm -o hatching.strokes.jsonl
+    penink blast --width 6in --ink lines.strokes.jsonl --lines photo.lines.json photo.pgm -o hatching.strokes.jsonl
     penink to-ps hatching.strokes.jsonl lines.strokes.jsonl -o photo.ps
     """
     from penink_cli.formats import strokes

@@ -247,6 +247,33 @@ class Strokes:
         swelling = replace(self, widths=means, knot_widths=knot_widths)
         return replace(swelling, widths=np.where(swelling.swells, means, knot_widths[knots[:-1]]))
 
+    def by_segments(self, step: float = 0.15) -> Strokes:
+        """Strokes that cover the same, each of one width: those that swell in pieces, a step (points) apart."""
+        if self.knot_widths is None:
+            return self
+        swells = self.swells
+        even, some = self.taken(~swells), self.taken(swells)
+        counts = np.diff(some.first) // 3
+        within = np.arange(int(counts.sum())) - np.repeat(np.cumsum(counts) - counts, counts)
+        control = some.points[(np.repeat(some.first[:-1], counts) + 3 * within)[:, None] + np.arange(4)]
+        knot = np.repeat(some.knots[:-1], counts) + within
+        begin, end = some.at_knots[knot], some.at_knots[knot + 1]
+        n = np.maximum(np.ceil(np.abs(end - begin) / step), 1).astype(np.int64)
+        which = np.repeat(np.arange(len(n)), n)
+        k = np.arange(len(which)) - np.repeat(np.cumsum(n) - n, n)
+        u, v = (k / n[which])[:, None], ((k + 1) / n[which])[:, None]
+
+        def at(*places: Floats) -> Floats:  # the polar form
+            p = control[which]
+            for t in places:
+                p = p[:, :-1] + (p[:, 1:] - p[:, :-1]) * t[:, :, None]
+            return np.asarray(p[:, 0])
+
+        points = np.stack([at(u, u, u), at(u, u, v), at(u, v, v), at(v, v, v)], axis=1).reshape(-1, 2)
+        widths = begin[which] + (end - begin)[which] * (k + 0.5) / n[which]
+        pieces = replace(some, points=points, first=4 * np.arange(len(which) + 1), widths=widths, knot_widths=None)
+        return Strokes.joined([replace(even, knot_widths=None), pieces])
+
     def taken(self, which: npt.NDArray[Any], turned: npt.NDArray[np.bool_] | None = None) -> Strokes:
         """The strokes with these numbers, in that order, or those where a mask (s,) is true.
 

@@ -44,9 +44,10 @@ INHIBITION = 0.25
 ALONE = 0.4
 #: A light line must be lighter than what lies so many pixels to each side of it by this.
 BESIDE, RIDGE = 3.0, 0.03
-#: A spot's rank: so many times the cube of its contrast, a part of that where it is longer than broad, and less where
-#: there is more of lines around it than this response: in lettering they are not spots but letters.
-SPOT, LONG_SPOT, CALM = 12.0, 0.6, 0.004
+#: A spot's rank: so many times the cube of its contrast, a part of that where it is longer than broad; less where there
+#: is more of lines around it than this response (in lettering they are letters), where it is broader than SMALL
+#: (pixels: hatching can show it) and where its border is less crisp.
+SPOT, LONG_SPOT, CALM, SMALL, CRISP = 12.0, 0.6, 0.004, 12.0, 0.45
 #: What lies in or along a spot and is no longer than so many times the spot is a part of it.
 AROUND = 4.0
 #: How far from a spot a fine line, and a coarse one, are still its own: the filters' reach.
@@ -226,7 +227,8 @@ def _spot_line(spot: Spot, strong: Picture) -> _Line:
         rank *= LONG_SPOT
     points = np.array(ends)
     calm = min(1.0, CALM / max(float(_at(strong, points)[0]), 1e-9))
-    return _Line(points, rank * calm * calm, False, spot.breadth)
+    sure = calm * min(1.0, SMALL / spot.breadth) * spot.crisp / CRISP
+    return _Line(points, rank * sure * sure, False, spot.breadth)
 
 
 def _at(values: npt.NDArray[np.generic], points: Floats) -> npt.NDArray[np.generic]:

@@ -38,6 +38,7 @@ class Spot:
 
     x, y: its middle, pixel centres at whole numbers. dx, dy: from there to the middle of its rounded end. breadth:
     pixels. contrast: grey step to its surroundings.
+    crisp: the part of it that its border makes up.
     """
 
     x: float
@@ -46,6 +47,7 @@ class Spot:
     dy: float
     breadth: float
     contrast: float
+    crisp: float
 
 
 def spots(picture: Picture, threads: int) -> list[Spot]:
@@ -113,7 +115,10 @@ def _spot(picture: Picture, taken: np.ndarray, i: int, j: int, radius: float) ->
         return None
     outer = ndimage.binary_dilation(mine, iterations=3) & ~ndimage.binary_dilation(mine, iterations=2) & ~dark
     inner = mine & ~ndimage.binary_erosion(mine, border_value=1)
-    if not outer.any() or _mean(window[outer]) - _mean(window[inner]) < CRISP * contrast:
+    if not outer.any():
+        return None
+    crisp = (_mean(window[outer]) - _mean(window[inner])) / contrast
+    if crisp < CRISP:
         return None
     rows, columns = np.nonzero(mine)
     n = len(rows)
@@ -129,10 +134,10 @@ def _spot(picture: Picture, taken: np.ndarray, i: int, j: int, radius: float) ->
     taken[top : i + r + 1, left : j + r + 1] |= mine
     middle = left + mx / n, top + my / n
     if major < 1.3 * minor:
-        return Spot(*middle, 0.0, 0.0, 2 * math.sqrt(n / math.pi), contrast)
+        return Spot(*middle, 0.0, 0.0, 2 * math.sqrt(n / math.pi), contrast, crisp)
     ex, ey = (xx - yy + root, 2 * xy) if xx > yy else (2 * xy, yy - xx + root)
     size = 2 * (major - minor) / math.sqrt(ex * ex + ey * ey)
-    return Spot(*middle, ex * size, ey * size, 4 * minor, contrast)
+    return Spot(*middle, ex * size, ey * size, 4 * minor, contrast, crisp)
 
 
 def _disc(radius: float) -> np.ndarray:

@@ -15,12 +15,14 @@ KNOT_PT, SMOOTH_PT = 3.0, 0.6
 FINEST, TIP_PT, TIP = 0.25, 12.0, 0.45
 
 
-def line_strokes(lines: Lines, width_pt: float, height_pt: float, choice: LineChoice) -> Strokes:
-    """Strokes of the dark lines, the most telling first, on a sheet of width_pt × height_pt."""
+def line_strokes(
+    lines: Lines, width_pt: float, height_pt: float, choice: LineChoice, white: bool = False
+) -> Strokes:
+    """Strokes along the dark lines, or the white ones, the most telling first, on a sheet of width_pt × height_pt."""
     scale = np.array([width_pt / lines.width, height_pt / lines.height])
     chains: list[Floats] = []
     widths: list[Floats | float] = []
-    for i in chosen(lines, width_pt, height_pt, choice).tolist():
+    for i in chosen(lines, width_pt, height_pt, choice, white).tolist():
         points, weight = lines[i] * scale, lines.weight[lines.first[i] : lines.first[i + 1]]
         if lines.breadth[i] > 0:
             breadth = float(lines.breadth[i]) * math.sqrt(float(scale[0] * scale[1]))

@@ -1,0 +1,70 @@
+"""Hatching and telling lines on one sheet."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from penink_cli.blasting.blast import blast
+from penink_cli.blasting.sheet import coverage
+from penink_cli.blasting.telling import told
+from penink_cli.ground.model import Lines, Strokes
+from penink_cli.lines.choice import LineChoice
+from penink_cli.lines.strokes import line_strokes
+from penink_cli.options.textures import find_texture
+
+SIDE = 144.0
+
+
+def lines(white: bool) -> Lines:
+    """One line, from left to right, across the middle of a picture of 100 × 100 pixels."""
+    points = np.column_stack([np.linspace(10, 90, 21), np.full(21, 50.0)])
+    return Lines(100, 100, points, np.array([0, 21]), np.ones(21), np.array([9.0]), np.array([white]), np.zeros(1))
+
+
+def rows(strokes: Strokes) -> np.ndarray:
+    """Ink of each row of points of the sheet, over the middle of the line."""
+    return coverage(strokes, 144, 144)[:, 30:114].mean(axis=1)
+
+
+def test_light_lines_are_left_out_where_it_is_dark_and_only_there():
+    for tone, shown in ((0.75, True), (0.2, False)):
+        asked = np.full((288, 288), tone)
+        left, near = told(asked, SIDE, SIDE, lines(white=True), None, 1)
+        assert not near.any()
+        assert (left[143:145, 100:200].mean() < 0.5 * tone) == shown
+        assert np.allclose(left[:130], tone, atol=1e-6)
+        drawn = rows(blast(asked, SIDE, SIDE, None, find_texture("crosshatch"), lines=lines(white=True)))
+        assert (drawn[71:73].min() < 0.5 * drawn[40:60].mean()) == shown
+
+
+def test_hatching_keeps_clear_of_dark_lines_that_are_drawn():
+    asked = np.full((288, 288), 0.4)
+    ink = line_strokes(lines(white=False), SIDE, SIDE, LineChoice())
+    plain, clear = (
+        rows(blast(asked, SIDE, SIDE, None, find_texture("crosshatch"), outlines=ink, lines=given))
+        for given in (None, lines(white=False))
+    )
+    beside = [69, 70, 73, 74]
+    assert clear[beside].mean() < 0.8 * plain[beside].mean()
+    assert abs(clear[20:60].mean() - plain[20:60].mean()) < 0.03
+
+
+def test_thin_things_are_not_drawn_where_a_line_tells_of_them():
+    asked = np.full((288, 288), 0.05)
+    asked[142:146, 30:260] = 0.9
+    ink = line_strokes(lines(white=False), SIDE, SIDE, LineChoice())
+
+    def along(given: Lines | None) -> int:
+        drawn = blast(asked, SIDE, SIDE, None, find_texture("crosshatch"), outlines=ink, lines=given)
+        ys = [np.ptp(drawn[i][:, 1]) for i in range(len(drawn)) if abs(drawn[i][:, 1].mean() - 72) < 1.5]
+        return sum(1 for y in ys if y < 1.0)
+
+    assert along(lines(white=False)) < along(None)
+
+
+def test_swelling_ink_is_counted_as_it_is_drawn():
+    swelling = Strokes.of(SIDE, SIDE, [[[20, 72], [50, 72], [90, 72], [120, 72]]], [[0.5, 8.0]])
+    there = coverage(swelling, 144, 144)
+    assert there[:, 20:40].sum() < 0.5 * there[:, 90:110].sum()
+    pieces = swelling.by_segments()
+    assert np.allclose(pieces[len(pieces) // 2][0], (70, 72), atol=2) and np.diff(pieces.widths).max() < 0.16
