@@ -5,12 +5,14 @@ cdef class Planar:
     cdef int[:, ::1] _head
     cdef int[:, ::1] _entry
     cdef int[::1] _ignored
-    cdef int _stamp, _free
+    cdef int _stamp, _free, _vacant
     cdef long long _cell
     cdef void _span(
         self, long long row, long long ax, long long ay, long long bx, long long by, int* span
     ) noexcept nogil
-    cpdef bint add(self, int s)
+    cdef void _link(self, Py_ssize_t first) noexcept
+    cdef int _extend(self, int needed) except -1
+    cpdef int add(self, int s) except -1
     cpdef void remove(self, int s)
     cpdef void ignore_none(self)
     cpdef void ignore(self, int s)

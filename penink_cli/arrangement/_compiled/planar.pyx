@@ -8,6 +8,8 @@ arrangement built here is one by construction.
 
 from libc.math cimport floor
 
+import numpy as np
+
 
 cdef inline int _turn(
     long long ax, long long ay, long long bx, long long by, long long cx, long long cy
@@ -36,11 +38,7 @@ cdef class Planar:
         self._ignored = ignored
         self._cell = cell
         self._stamp = 1
-        cdef Py_ssize_t k
-        for k in range(entry.shape[0]):
-            self._entry[k, 1] = k + 1
-        self._entry[entry.shape[0] - 1, 1] = -1
-        self._free = 0
+        self._link(0)
 
     cdef void _span(
         self, long long row, long long ax, long long ay, long long bx, long long by, int* span
@@ -63,10 +61,29 @@ cdef class Planar:
         span[0] = max(0, <int>floor((x0 - 1) / self._cell))
         span[1] = min(self._head.shape[1] - 1, <int>floor((x1 + 1) / self._cell))
 
-    cpdef bint add(self, int s):
-        """Make segment s live. False, and nothing changed, where the grid's entries are used up."""
+    cdef void _link(self, Py_ssize_t first) noexcept:
+        """Have the entries from `first` on, of which none is in use, be all that are free."""
+        cdef Py_ssize_t k
+        cdef Py_ssize_t n = self._entry.shape[0]
+        for k in range(first, n):
+            self._entry[k, 1] = k + 1 if k + 1 < n else self._free if first else -1
+        self._free = first
+        self._vacant += n - first
+
+    cdef int _extend(self, int needed) except -1:
+        """Make room for so many entries more."""
+        cdef Py_ssize_t n = self._entry.shape[0]
+        more = np.zeros((2 * n + needed, 2), np.int32)
+        more[:n] = self._entry
+        self._entry = more
+        self._link(n)
+        return 0
+
+    cpdef int add(self, int s) except -1:
+        """Make segment s live. MemoryError, and nothing changed, where there is no room for it."""
         cdef long long row
         cdef int column, entry
+        cdef int needed = 0
         cdef int[2] span
         cdef int a = self.ends[s, 0]
         cdef int b = self.ends[s, 1]
@@ -74,16 +91,20 @@ cdef class Planar:
         cdef long long by = self.vertices[b, 1]
         for row in range(min(ay, by) // self._cell, max(ay, by) // self._cell + 1):
             self._span(row, self.vertices[a, 0], ay, self.vertices[b, 0], by, span)
+            needed += span[1] - span[0] + 1
+        if needed > self._vacant:
+            self._extend(needed)
+        self._vacant -= needed
+        for row in range(min(ay, by) // self._cell, max(ay, by) // self._cell + 1):
+            self._span(row, self.vertices[a, 0], ay, self.vertices[b, 0], by, span)
             for column in range(span[0], span[1] + 1):
                 entry = self._free
-                if entry < 0:
-                    raise MemoryError("the grid of segments is full")
                 self._free = self._entry[entry, 1]
                 self._entry[entry, 0] = s
                 self._entry[entry, 1] = self._head[row, column]
                 self._head[row, column] = entry
         self.live[s] = 1
-        return True
+        return 0
 
     cpdef void remove(self, int s):
         """Take segment s out."""
@@ -110,6 +131,7 @@ cdef class Planar:
                     self._entry[before, 1] = self._entry[entry, 1]
                 self._entry[entry, 1] = self._free
                 self._free = entry
+                self._vacant += 1
         self.live[s] = 0
 
     cpdef void ignore_none(self):

@@ -1,4 +1,4 @@
-# cython: language_level=3, boundscheck=False, wraparound=False, cdivision=True
+# cython: boundscheck=False, wraparound=False, cdivision=True
 """Loops over rows of a picture: means of areas, separable symmetric filters, linear enlarging.
 
 Every number is a sum in one fixed order, whatever rows a call is given, so threads may share the rows as they like.

@@ -1,4 +1,4 @@
-# cython: language_level=3, boundscheck=False, wraparound=False, cdivision=True, initializedcheck=False
+# cython: boundscheck=False, wraparound=False, cdivision=True, initializedcheck=False
 # cython: embedsignature=True
 """Reads the codes of a JPEG scan (ITU-T T.81, F.2 and G.2) without making pixels of them: are they all there?
 

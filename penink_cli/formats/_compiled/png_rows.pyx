@@ -1,4 +1,4 @@
-# cython: language_level=3, boundscheck=False, wraparound=False, cdivision=True, initializedcheck=False
+# cython: boundscheck=False, wraparound=False, cdivision=True, initializedcheck=False
 # cython: embedsignature=True
 """Undoes the filters of PNG rows (PNG specification, 9: each byte was written as its difference from a neighbour)."""
 

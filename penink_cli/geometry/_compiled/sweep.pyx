@@ -7,8 +7,9 @@ seen the order is true, and the leftmost wrong meeting is always one of: an edge
 two edges leaving a vertex in one direction, two neighbours that cross.
 """
 
-from libc.stdlib cimport free, malloc
+from libc.stdlib cimport free
 from penink_cli.geometry._compiled.predicates cimport orient
+from penink_cli.ground._compiled.memory cimport room
 
 cdef int CROSS = 1
 cdef int TOUCH = 2
@@ -34,9 +35,9 @@ cdef class Sweep:
         self.y = &y[0]
         self.start = &start[0]
         self.end = &end[0]
-        self.left = <int*>malloc(n * sizeof(int))
-        self.right = <int*>malloc(n * sizeof(int))
-        self.priority = <unsigned int*>malloc(n * sizeof(unsigned int))
+        self.left = <int*>room(n, sizeof(int))
+        self.right = <int*>room(n, sizeof(int))
+        self.priority = <unsigned int*>room(n, sizeof(unsigned int))
         for k in range(n):  # an integer hash, so that no input can be built to unbalance the treap by its order alone
             h = <unsigned int>k * <unsigned int>2654435769 + 1
             h ^= h >> 15

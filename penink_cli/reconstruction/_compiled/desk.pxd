@@ -40,4 +40,4 @@ cdef class Desk:
     cdef unsigned char[16] shaded_rows
     cdef unsigned char[16] faded_rows
     cdef void* part(self, Py_ssize_t numbers) noexcept nogil
-    cdef int another_node(self, unsigned long long seen) noexcept nogil
+    cdef int another_node(self, unsigned long long seen) except -1 nogil

@@ -1,8 +1,9 @@
 # cython: boundscheck=False, wraparound=False, cdivision=True
 """What one thread keeps at hand while it reconstructs one tile after the other."""
 
-from libc.stdlib cimport free, malloc, realloc
+from libc.stdlib cimport free
 from libc.string cimport memcpy, memset
+from penink_cli.ground._compiled.memory cimport grow, room
 from penink_cli.reconstruction._compiled.lanes cimport lanes_here
 
 cdef Py_ssize_t NUMBER = sizeof(double)  # room for one, in floats too
@@ -39,7 +40,7 @@ cdef class Desk:
         self.radius = <float>radius if single else radius
         self.only_b = only_b
         self.maxval = maxval
-        self.room = malloc(PARTS * NUMBER + 16 * LINE)
+        self.room = room(PARTS * NUMBER + 16 * LINE, 1)
         memset(self.room, 0, PARTS * NUMBER + 16 * LINE)
         self.free_place = aligned(self.room)
         self.bits = self.part(256 * 8)
@@ -52,11 +53,11 @@ cdef class Desk:
         self.distance = self.part(16 * 64)
         self.alpha = self.part(16 * 64)
         self.size = 32
-        self.nodes_room = malloc(self.size * 64 * NUMBER + LINE)
+        self.nodes_room = room(self.size * 64 * NUMBER + LINE, 1)
         self.nodes = aligned(self.nodes_room)
-        self.node_mask = <unsigned long long*>malloc(self.size * sizeof(unsigned long long))
-        self.bend = <int*>malloc(self.size * sizeof(int))
-        self.bend_length = <double*>malloc(self.size * sizeof(double))
+        self.node_mask = <unsigned long long*>room(self.size, sizeof(unsigned long long))
+        self.bend = <int*>room(self.size, sizeof(int))
+        self.bend_length = <double*>room(self.size, sizeof(double))
         for k in range(256):
             for i in range(8):
                 if single:
@@ -84,20 +85,20 @@ cdef class Desk:
         self.free_place = <char*>aligned(at + numbers * NUMBER)
         return at
 
-    cdef int another_node(self, unsigned long long seen) noexcept nogil:
+    cdef int another_node(self, unsigned long long seen) except -1 nogil:
         """Room for the distances to one more node, seen from some pixels; its place."""
         cdef void* larger
         cdef int slot = self.used
         if slot == self.size:
-            larger = malloc(2 * self.size * 64 * NUMBER + LINE)
+            grow(<void**>&self.node_mask, 2 * self.size, sizeof(unsigned long long))
+            grow(<void**>&self.bend, 2 * self.size, sizeof(int))
+            grow(<void**>&self.bend_length, 2 * self.size, sizeof(double))
+            larger = room(2 * self.size * 64 * NUMBER + LINE, 1)
             memcpy(aligned(larger), self.nodes, self.size * 64 * NUMBER)
             free(self.nodes_room)
             self.nodes_room = larger
             self.nodes = aligned(larger)
             self.size *= 2
-            self.node_mask = <unsigned long long*>realloc(self.node_mask, self.size * sizeof(unsigned long long))
-            self.bend = <int*>realloc(self.bend, self.size * sizeof(int))
-            self.bend_length = <double*>realloc(self.bend_length, self.size * sizeof(double))
         self.node_mask[slot] = seen
         self.used = slot + 1
         return slot

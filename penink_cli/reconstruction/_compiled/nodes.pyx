@@ -8,8 +8,9 @@ one test replaces "within the sector" and prunes nearly all bends of a smooth ch
 """
 
 from libc.math cimport sqrt
-from libc.stdlib cimport free, malloc, realloc
+from libc.stdlib cimport free
 from penink_cli.geometry._compiled.predicates cimport orient
+from penink_cli.ground._compiled.memory cimport grow, room
 from penink_cli.reconstruction._compiled.scene cimport BLOCK, Scene, doubles, ints
 
 
@@ -135,7 +136,7 @@ cdef int home(Scene scene, int n) noexcept nogil:
     return (scene.row_of(scene.vy[v]) >> BLOCK) * scene.node_across + (scene.column_of(scene.vx[v]) >> BLOCK)
 
 
-cdef void find_arcs(Scene scene) noexcept nogil:
+cdef int find_arcs(Scene scene) except -1 nogil:
     """The arcs of the path graph: taut at both ends, unobstructed, no third vertex touched, at most `reach` long.
 
     Each pair of nodes is looked at once; then its arc is entered with both.
@@ -143,46 +144,51 @@ cdef void find_arcs(Scene scene) noexcept nogil:
     cdef int u, v, n, row, k, c0, c1
     cdef double x, y, d
     cdef int used = 0, size = 64
-    cdef int* ends = <int*>malloc(2 * size * sizeof(int))
-    cdef double* lengths = <double*>malloc(size * sizeof(double))
-    for n in range(scene.n_nodes):
-        u = scene.node_vertex[n]
-        x = scene.vx[u]
-        y = scene.vy[u]
-        c0 = scene.column_of(x - scene.reach) >> BLOCK
-        c1 = (scene.column_of(x + scene.reach) >> BLOCK) + 1
-        for row in range(scene.row_of(y - scene.reach) >> BLOCK, (scene.row_of(y + scene.reach) >> BLOCK) + 1):
-            for k in range(
-                scene.node_start[row * scene.node_across + c0], scene.node_start[row * scene.node_across + c1]
-            ):
-                v = scene.node_sorted[k]
-                d = arc(scene, n, v) if v > n else -1.0
-                if d < 0.0:
-                    continue
-                if used == size:
-                    size *= 2
-                    ends = <int*>realloc(ends, 2 * size * sizeof(int))
-                    lengths = <double*>realloc(lengths, size * sizeof(double))
-                ends[2 * used] = n
-                ends[2 * used + 1] = v
-                lengths[used] = d
-                used += 1
-                scene.arc_start[n] += 1
-                scene.arc_start[v] += 1
-    scene.arc_to = <int*>malloc((2 * used + 1) * sizeof(int))
-    scene.arc_length = <double*>malloc((2 * used + 1) * sizeof(double))
-    c0 = 0
-    for n in range(scene.n_nodes + 1):
-        c0 += scene.arc_start[n]
-        scene.arc_start[n] = c0
-    for k in range(used - 1, -1, -1):  # from the end of each node's arcs down, so that their start is what is left
-        for row in range(2):
-            n = ends[2 * k + row]
-            scene.arc_start[n] -= 1
-            scene.arc_to[scene.arc_start[n]] = ends[2 * k + 1 - row]
-            scene.arc_length[scene.arc_start[n]] = lengths[k]
-    free(ends)
-    free(lengths)
+    cdef int* ends = NULL
+    cdef double* lengths = NULL
+    try:
+        grow(<void**>&ends, 2 * size, sizeof(int))
+        grow(<void**>&lengths, size, sizeof(double))
+        for n in range(scene.n_nodes):
+            u = scene.node_vertex[n]
+            x = scene.vx[u]
+            y = scene.vy[u]
+            c0 = scene.column_of(x - scene.reach) >> BLOCK
+            c1 = (scene.column_of(x + scene.reach) >> BLOCK) + 1
+            for row in range(scene.row_of(y - scene.reach) >> BLOCK, (scene.row_of(y + scene.reach) >> BLOCK) + 1):
+                for k in range(
+                    scene.node_start[row * scene.node_across + c0], scene.node_start[row * scene.node_across + c1]
+                ):
+                    v = scene.node_sorted[k]
+                    d = arc(scene, n, v) if v > n else -1.0
+                    if d < 0.0:
+                        continue
+                    if used == size:
+                        grow(<void**>&ends, 4 * size, sizeof(int))
+                        grow(<void**>&lengths, 2 * size, sizeof(double))
+                        size *= 2
+                    ends[2 * used] = n
+                    ends[2 * used + 1] = v
+                    lengths[used] = d
+                    used += 1
+                    scene.arc_start[n] += 1
+                    scene.arc_start[v] += 1
+        scene.arc_to = <int*>room(2 * used, sizeof(int))
+        scene.arc_length = <double*>room(2 * used, sizeof(double))
+        c0 = 0
+        for n in range(scene.n_nodes + 1):
+            c0 += scene.arc_start[n]
+            scene.arc_start[n] = c0
+        for k in range(used - 1, -1, -1):  # from the end of each node's arcs down, so that their start is what is left
+            for row in range(2):
+                n = ends[2 * k + row]
+                scene.arc_start[n] -= 1
+                scene.arc_to[scene.arc_start[n]] = ends[2 * k + 1 - row]
+                scene.arc_length[scene.arc_start[n]] = lengths[k]
+    finally:
+        free(ends)
+        free(lengths)
+    return 0
 
 
 cdef double arc(Scene scene, int m, int n) noexcept nogil:

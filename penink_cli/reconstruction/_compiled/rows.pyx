@@ -19,7 +19,7 @@ cdef float _smooth(float t) noexcept nogil:
     return 0.0 if t <= 0.0 else (1.0 if t >= 1.0 else t * t * (3.0 - 2.0 * t))
 
 
-cdef void _shade(Tile tile, Desk desk) noexcept nogil:
+cdef int _shade(Tile tile, Desk desk) except -1 nogil:
     """Find what the points of a tile that `see` has looked at do not see, and how far it is attenuated."""
     cdef int k
     cdef float u

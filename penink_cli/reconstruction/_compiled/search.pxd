@@ -26,10 +26,10 @@ cdef class Finder:
     cdef int n_done
     cdef double* alpha
     cdef int alpha_size
-    cdef void push(self, int node, double key) noexcept nogil
-    cdef void first_bends(self, double qx, double qy, double reach) noexcept nogil
-    cdef void spread(self, double reach) noexcept nogil
-    cdef int bends_of(self, int i, int j) noexcept nogil
-    cdef bint attenuate(self, double px, double py, int i0, int i1, int j0, int j1, double r) noexcept nogil
+    cdef int push(self, int node, double key) except -1 nogil
+    cdef int first_bends(self, double qx, double qy, double reach) except -1 nogil
+    cdef int spread(self, double reach) except -1 nogil
+    cdef int bends_of(self, int i, int j) except -1 nogil
+    cdef bint attenuate(self, double px, double py, int i0, int i1, int j0, int j1, double r) except -1 nogil
     cdef double last_leg(self, double qx, double qy, double limit) noexcept nogil
-    cdef double length(self, double px, double py, double qx, double qy, double limit) noexcept nogil
+    cdef double length(self, double px, double py, double qx, double qy, double limit) except -1 nogil

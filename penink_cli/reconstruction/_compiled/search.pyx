@@ -2,7 +2,8 @@
 """Shortest unobstructed paths by a bounded Dijkstra over the path graph, and equation 4 at single points."""
 
 from libc.math cimport fabs, sqrt
-from libc.stdlib cimport free, malloc, realloc
+from libc.stdlib cimport free
+from penink_cli.ground._compiled.memory cimport grow, room
 from penink_cli.reconstruction._compiled.scene cimport BLOCK, Scene
 from penink_cli.reconstruction._compiled.views cimport Views, worth
 
@@ -27,19 +28,19 @@ cdef class Finder:
         # In a crowd there are more edges near a node than on the way to it.
         self.looks = closed and scene.n_crowded == 0 and self.views.window <= WIDEST
         cdef Py_ssize_t k
-        self.distance = <double*>malloc(max(1, scene.n_nodes) * sizeof(double))
-        self.stamp = <int*>malloc(max(1, scene.n_nodes) * sizeof(int))
-        self.done = <int*>malloc(max(1, scene.n_nodes) * sizeof(int))
+        self.distance = <double*>room(max(1, scene.n_nodes), sizeof(double))
+        self.stamp = <int*>room(max(1, scene.n_nodes), sizeof(int))
+        self.done = <int*>room(max(1, scene.n_nodes), sizeof(int))
         for k in range(scene.n_nodes):
             self.stamp[k] = -1
         self.pool_size = 1024
-        self.pool_node = <int*>malloc(self.pool_size * sizeof(int))
-        self.pool_length = <double*>malloc(self.pool_size * sizeof(double))
+        self.pool_node = <int*>room(self.pool_size, sizeof(int))
+        self.pool_length = <double*>room(self.pool_size, sizeof(double))
         self.heap_size = 256
-        self.heap_node = <int*>malloc(self.heap_size * sizeof(int))
-        self.heap_key = <double*>malloc(self.heap_size * sizeof(double))
+        self.heap_node = <int*>room(self.heap_size, sizeof(int))
+        self.heap_key = <double*>room(self.heap_size, sizeof(double))
         self.alpha_size = 64
-        self.alpha = <double*>malloc(self.alpha_size * sizeof(double))
+        self.alpha = <double*>room(self.alpha_size, sizeof(double))
         self.move(row0, row1)
 
     def move(self, int row0, int row1):
@@ -49,9 +50,9 @@ cdef class Finder:
         self.row0 = row0
         self.row1 = row1
         if n > self.room:
+            grow(<void**>&self.start, n, sizeof(int))
+            grow(<void**>&self.count, n, sizeof(int))
             self.room = n
-            self.start = <int*>realloc(self.start, n * sizeof(int))
-            self.count = <int*>realloc(self.count, n * sizeof(int))
         for k in range(n):
             self.count[k] = -1
         self.pool_used = 0
@@ -71,17 +72,17 @@ cdef class Finder:
         free(self.heap_key)
         free(self.alpha)
 
-    cdef void push(self, int node, double key) noexcept nogil:
+    cdef int push(self, int node, double key) except -1 nogil:
         """Note a path of that length to a node, if none as short is known."""
         cdef int i, up
         if self.stamp[node] == self.now and self.distance[node] <= key:
-            return
+            return 0
         self.stamp[node] = self.now
         self.distance[node] = key
         if self.heap_used == self.heap_size:
+            grow(<void**>&self.heap_node, 2 * self.heap_size, sizeof(int))
+            grow(<void**>&self.heap_key, 2 * self.heap_size, sizeof(double))
             self.heap_size *= 2
-            self.heap_node = <int*>realloc(self.heap_node, self.heap_size * sizeof(int))
-            self.heap_key = <double*>realloc(self.heap_key, self.heap_size * sizeof(double))
         i = self.heap_used
         self.heap_used += 1
         while i > 0:
@@ -94,7 +95,7 @@ cdef class Finder:
         self.heap_key[i] = key
         self.heap_node[i] = node
 
-    cdef void first_bends(self, double qx, double qy, double reach) noexcept nogil:
+    cdef int first_bends(self, double qx, double qy, double reach) except -1 nogil:
         """Start a search: note the nodes that the query q sees, within reach."""
         cdef int row, k, n
         cdef double x, y, d
@@ -119,7 +120,7 @@ cdef class Finder:
                 if self.scene.bends_for(n, qx, qy) and self.scene.sees_vertex(qx, qy, self.scene.node_vertex[n]):
                     self.push(n, d)
 
-    cdef void spread(self, double reach) noexcept nogil:
+    cdef int spread(self, double reach) except -1 nogil:
         """Dijkstra from the noted nodes as far as `reach`; `done` lists the nodes reached, nearest first."""
         cdef int n, node, i, down, k
         cdef double key, last
@@ -159,7 +160,7 @@ cdef class Finder:
                 ):
                     self.push(n, last)
 
-    cdef int bends_of(self, int i, int j) noexcept nogil:
+    cdef int bends_of(self, int i, int j) except -1 nogil:
         """Where the pool keeps the bends of sample (row i, column j), nearest first; `count` says how many."""
         cdef int k
         cdef Py_ssize_t s = <Py_ssize_t>(i - self.row0) * self.scene.width + j
@@ -184,9 +185,9 @@ cdef class Finder:
                 self.done[self.n_done] = self.heap_node[k]
                 self.n_done += 1
         while self.pool_used + self.n_done > self.pool_size:
+            grow(<void**>&self.pool_node, 2 * self.pool_size, sizeof(int))
+            grow(<void**>&self.pool_length, 2 * self.pool_size, sizeof(double))
             self.pool_size *= 2
-            self.pool_node = <int*>realloc(self.pool_node, self.pool_size * sizeof(int))
-            self.pool_length = <double*>realloc(self.pool_length, self.pool_size * sizeof(double))
         self.start[s] = <int>self.pool_used
         self.count[s] = self.n_done
         for k in range(self.n_done):
@@ -195,7 +196,7 @@ cdef class Finder:
             self.pool_used += 1
         return self.start[s]
 
-    cdef bint attenuate(self, double px, double py, int i0, int i1, int j0, int j1, double r) noexcept nogil:
+    cdef bint attenuate(self, double px, double py, int i0, int i1, int j0, int j1, double r) except -1 nogil:
         """Equation 4 for the query p and the block of samples of rows i0 … i1, columns j0 … j1, into `alpha`.
 
         False, and nothing filled, where no edge is between: all are one. This finder must remember seen nodes only.
@@ -210,8 +211,8 @@ cdef class Finder:
         if self.scene.clear(px if px < j0 else j0, py if py < i0 else i0, px if px > j1 else j1, py if py > i1 else i1):
             return False
         if n > self.alpha_size:
+            grow(<void**>&self.alpha, n, sizeof(double))
             self.alpha_size = n
-            self.alpha = <double*>realloc(self.alpha, n * sizeof(double))
         for i in range(i0, i1 + 1):
             for j in range(j0, j1 + 1):
                 if self.scene.sees(px, py, j, i):
@@ -280,7 +281,7 @@ cdef class Finder:
                 limit = best
         return best
 
-    cdef double length(self, double px, double py, double qx, double qy, double limit) noexcept nogil:
+    cdef double length(self, double px, double py, double qx, double qy, double limit) except -1 nogil:
         """Length of the shortest unobstructed path between two queries, infinite beyond the limit."""
         cdef double d = sqrt((px - qx) * (px - qx) + (py - qy) * (py - qy))
         if d > limit:

@@ -5,7 +5,8 @@ In double, or for 8-bit output in float, which vectorises twice as wide.
 """
 
 cimport cython
-from libc.stdlib cimport free, malloc
+from libc.stdlib cimport free
+from penink_cli.ground._compiled.memory cimport room
 from penink_cli.reconstruction._compiled.lanes cimport (
     DOUBLES, FLOATS, PACK, Doubles, Floats, Lanes, all_floats, load, number, pack_bytes, store,
 )
@@ -38,7 +39,7 @@ def expand(real[:, ::1] samples, int begin, int[::1] x_first, real[:, ::1] xw, r
     cdef Py_ssize_t w = samples.shape[1]
     cdef Py_ssize_t runs = 0
     cdef real* f[16]
-    cdef int* start = <int*>malloc((n + 1) * sizeof(int))
+    cdef int* start = <int*>room((n + 1), sizeof(int))
     with nogil:
         for k in range(n):
             if k == 0 or x_first[k] != x_first[k - 1]:

@@ -1,4 +1,4 @@
 from penink_cli.reconstruction._compiled.desk cimport Desk
 from penink_cli.reconstruction._compiled.tile cimport Tile
 
-cdef void attenuate(Desk desk, Tile tile) noexcept nogil
+cdef int attenuate(Desk desk, Tile tile) except -1 nogil

@@ -7,7 +7,7 @@ from penink_cli.reconstruction._compiled.lanes cimport lowest
 from penink_cli.reconstruction._compiled.tile cimport Tile
 
 
-cdef int find_bends(Desk desk, Tile tile, int s) noexcept nogil:
+cdef int find_bends(Desk desk, Tile tile, int s) except -1 nogil:
     """The bends next to a sample that hidden pixels see; how many.
 
     The distances of all pixels to a node are measured when the first sample of the tile asks for it.
@@ -34,7 +34,7 @@ cdef int find_bends(Desk desk, Tile tile, int s) noexcept nogil:
             if tile.beyond(tile.scene.vx[v], tile.scene.vy[v], limit - d):
                 continue
             tile.node_stamp[node] = tile.now
-            seen = tile.node_mask(node)
+            tile.node_mask(node, &seen)
             if seen == 0:
                 tile.node_place[node] = -1
                 continue
@@ -52,7 +52,7 @@ cdef int find_bends(Desk desk, Tile tile, int s) noexcept nogil:
     return bends
 
 
-cdef void attenuate(Desk desk, Tile tile) noexcept nogil:
+cdef int attenuate(Desk desk, Tile tile) except -1 nogil:
     """Find the samples that do not count fully in each row of pixels, and their attenuation."""
     cdef int s, bends
     cdef int left = tile.shaded

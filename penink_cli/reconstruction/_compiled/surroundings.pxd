@@ -3,8 +3,7 @@ cimport cython
 from penink_cli.reconstruction._compiled.pixels cimport Pixels
 from penink_cli.reconstruction._compiled.scene cimport Scene
 
-cdef int* zeros(Py_ssize_t n) noexcept nogil
-cdef int* grown(int* room, Py_ssize_t n) noexcept nogil
+cdef int* zeros(Py_ssize_t n) except NULL nogil
 
 
 cdef class Surroundings(Pixels):
@@ -35,7 +34,7 @@ cdef class Surroundings(Pixels):
     cdef unsigned long long* line
     cdef void place_in_row(self, int cy, double* py, int ny) noexcept nogil
     cdef void place(self, int cx, double* px, int nx) noexcept nogil
-    cdef void gather(self, int radius) noexcept nogil
-    cdef int enter_vertex(self, int v) noexcept nogil
+    cdef int gather(self, int radius) except -1 nogil
+    cdef int enter_vertex(self, int v) except -1 nogil
     cdef void classify_vertex(self, int k) noexcept nogil
     cdef void classify_edge(self, int k, bint samples_too) noexcept nogil

@@ -5,7 +5,9 @@ A set of samples is a word of 16 bits, in reading order; for sets of pixels see 
 """
 
 from libc.math cimport fabsf
-from libc.stdlib cimport free, malloc, realloc
+from libc.stdlib cimport free
+from libc.string cimport memset
+from penink_cli.ground._compiled.memory cimport grow, room
 from penink_cli.reconstruction._compiled.lanes cimport (
     Four, above_four, all_four, four_at, lanes_here, lowest, size_four,
 )
@@ -41,14 +43,14 @@ cdef class Surroundings(Pixels):
         self.sample_side = zeros(64)
         self.partial = zeros(64)
         self.has_side_mask = zeros(64)
-        self.side_mask = <unsigned long long*>malloc(64 * 8)
+        self.side_mask = <unsigned long long*>room(64, sizeof(unsigned long long))
         self.vertex = zeros(128)
-        self.lx = <float*>malloc(128 * 4)
-        self.ly = <float*>malloc(128 * 4)
+        self.lx = <float*>room(128, sizeof(float))
+        self.ly = <float*>room(128, sizeof(float))
         self.positive = zeros(128)
         self.negative = zeros(128)
         self.has_line = zeros(128)
-        self.line = <unsigned long long*>malloc(128 * 16 * 8)
+        self.line = <unsigned long long*>room(128 * 16, sizeof(unsigned long long))
 
     def __dealloc__(self):
         free(self.edge_stamp)
@@ -93,7 +95,7 @@ cdef class Surroundings(Pixels):
         self.n_edges = 0
         self.n_vertices = 0
 
-    cdef void gather(self, int radius) noexcept nogil:
+    cdef int gather(self, int radius) except -1 nogil:
         """Enter the edges of the cells up to `radius` away, those that are not there yet."""
         cdef int row, k, e
         cdef int c0 = self.cx + 1 - radius
@@ -113,35 +115,35 @@ cdef class Surroundings(Pixels):
                     continue
                 self.edge_stamp[e] = self.now
                 if self.n_edges == self.size_edges:
+                    grow(<void**>&self.edge, 2 * self.size_edges, sizeof(int))
+                    grow(<void**>&self.edge_a, 2 * self.size_edges, sizeof(int))
+                    grow(<void**>&self.edge_b, 2 * self.size_edges, sizeof(int))
+                    grow(<void**>&self.tile_side, 2 * self.size_edges, sizeof(int))
+                    grow(<void**>&self.sample_side, 2 * self.size_edges, sizeof(int))
+                    grow(<void**>&self.partial, 2 * self.size_edges, sizeof(int))
+                    grow(<void**>&self.has_side_mask, 2 * self.size_edges, sizeof(int))
+                    grow(<void**>&self.side_mask, 2 * self.size_edges, sizeof(unsigned long long))
                     self.size_edges *= 2
-                    self.edge = grown(self.edge, self.size_edges)
-                    self.edge_a = grown(self.edge_a, self.size_edges)
-                    self.edge_b = grown(self.edge_b, self.size_edges)
-                    self.tile_side = grown(self.tile_side, self.size_edges)
-                    self.sample_side = grown(self.sample_side, self.size_edges)
-                    self.partial = grown(self.partial, self.size_edges)
-                    self.has_side_mask = grown(self.has_side_mask, self.size_edges)
-                    self.side_mask = <unsigned long long*>realloc(self.side_mask, self.size_edges * 8)
                 self.edge[self.n_edges] = e
                 self.edge_a[self.n_edges] = self.enter_vertex(self.scene.ea[e])
                 self.edge_b[self.n_edges] = self.enter_vertex(self.scene.eb[e])
                 self.has_side_mask[self.n_edges] = False
                 self.n_edges += 1
 
-    cdef int enter_vertex(self, int v) noexcept nogil:
+    cdef int enter_vertex(self, int v) except -1 nogil:
         """The place of a vertex among those of the tile."""
         cdef int k
         if self.vertex_stamp[v] == self.now:
             return self.vertex_place[v]
         if self.n_vertices == self.size_vertices:
+            grow(<void**>&self.vertex, 2 * self.size_vertices, sizeof(int))
+            grow(<void**>&self.lx, 2 * self.size_vertices, sizeof(float))
+            grow(<void**>&self.ly, 2 * self.size_vertices, sizeof(float))
+            grow(<void**>&self.positive, 2 * self.size_vertices, sizeof(int))
+            grow(<void**>&self.negative, 2 * self.size_vertices, sizeof(int))
+            grow(<void**>&self.has_line, 2 * self.size_vertices, sizeof(int))
+            grow(<void**>&self.line, 2 * self.size_vertices, 16 * sizeof(unsigned long long))
             self.size_vertices *= 2
-            self.vertex = grown(self.vertex, self.size_vertices)
-            self.lx = <float*>realloc(self.lx, self.size_vertices * 4)
-            self.ly = <float*>realloc(self.ly, self.size_vertices * 4)
-            self.positive = grown(self.positive, self.size_vertices)
-            self.negative = grown(self.negative, self.size_vertices)
-            self.has_line = grown(self.has_line, self.size_vertices)
-            self.line = <unsigned long long*>realloc(self.line, self.size_vertices * 128)
         k = self.n_vertices
         self.n_vertices += 1
         self.vertex_stamp[v] = self.now
@@ -214,15 +216,8 @@ cdef class Surroundings(Pixels):
                 self.sample_side[k] |= 1 << j
 
 
-cdef int* zeros(Py_ssize_t n) noexcept nogil:
+cdef int* zeros(Py_ssize_t n) except NULL nogil:
     """Room for n whole numbers, all zero."""
-    cdef Py_ssize_t k
-    cdef int* room = <int*>malloc((n + 1) * sizeof(int))
-    for k in range(n + 1):
-        room[k] = 0
-    return room
-
-
-cdef int* grown(int* room, Py_ssize_t n) noexcept nogil:
-    """The same room, made larger."""
-    return <int*>realloc(room, n * sizeof(int))
+    cdef int* numbers = <int*>room(n, sizeof(int))
+    memset(numbers, 0, n * sizeof(int))
+    return numbers

@@ -13,7 +13,7 @@ cdef class Tile(Surroundings):
     cdef int shaded
     cdef int* node_stamp
     cdef int* node_place
-    cdef bint see(self) noexcept nogil
-    cdef unsigned long long node_mask(self, int node) noexcept nogil
+    cdef bint see(self) except -1 nogil
+    cdef int node_mask(self, int node, unsigned long long* seen) except -1 nogil
     cdef unsigned long long edge_mask(self, int k) noexcept nogil
     cdef void draw_lines(self, int k, int samples) noexcept nogil

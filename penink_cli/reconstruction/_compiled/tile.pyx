@@ -30,7 +30,7 @@ cdef class Tile(Surroundings):
         free(self.node_stamp)
         free(self.node_place)
 
-    cdef bint see(self) noexcept nogil:
+    cdef bint see(self) except -1 nogil:
         """Fill `hidden` and `shaded`; False, and nothing filled, if all pixels see all samples."""
         cdef int k, s, a, b, same, across, beyond, cut, left
         cdef unsigned long long mask, side, everything
@@ -86,8 +86,8 @@ cdef class Tile(Surroundings):
                 left &= left - 1
         return self.shaded != 0
 
-    cdef unsigned long long node_mask(self, int node) noexcept nogil:
-        """The pixels from which a path may go straight to a node, as the bend next to it."""
+    cdef int node_mask(self, int node, unsigned long long* seen) except -1 nogil:
+        """Find the pixels from which a path may go straight to a node, as the bend next to it."""
         cdef unsigned long long h
         cdef int k, e, side, la, lb
         cdef int scene_v = self.scene.node_vertex[node]
@@ -96,6 +96,7 @@ cdef class Tile(Surroundings):
         cdef double x = self.scene.vx[scene_v]
         cdef double y = self.scene.vy[scene_v]
         cdef unsigned long long m = ALL
+        seen[0] = 0
         if a != b:
             la = self.box_side(x, y, self.scene.vx[a], self.scene.vy[a])
             lb = self.box_side(x, y, self.scene.vx[b], self.scene.vy[b])
@@ -140,7 +141,8 @@ cdef class Tile(Surroundings):
             if self.tile_side[k] == 0:
                 h &= ~self.edge_mask(k) if side > 0 else self.edge_mask(k)
             m &= ~h
-        return m & self.pixels()
+        seen[0] = m & self.pixels()
+        return 0
 
     cdef unsigned long long edge_mask(self, int k) noexcept nogil:
         """The pixels on the positive side of an edge."""

@@ -18,7 +18,7 @@ cdef class Views:
     cdef unsigned int* alive
     cdef int* edge_stamp
     cdef int now
-    cdef void look(self, int row0, int row1) noexcept nogil
-    cdef void look_from(self, int n) noexcept nogil
+    cdef int look(self, int row0, int row1) except -1 nogil
+    cdef int look_from(self, int n) except -1 nogil
     cdef void block(self, int n, int e, int c0, int c1, int r0, int r1) noexcept nogil
-    cdef void enter(self, int n, int c0, int c1, int r0, int r1) noexcept nogil
+    cdef int enter(self, int n, int c0, int c1, int r0, int r1) except -1 nogil

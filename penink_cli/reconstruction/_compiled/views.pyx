@@ -7,8 +7,9 @@ near a line to tell in single precision are decided by the exact predicates.
 """
 
 from libc.math cimport ceil, fabs, fabsf, floor, sqrt
-from libc.stdlib cimport free, malloc, realloc
+from libc.stdlib cimport free
 from penink_cli.geometry._compiled.predicates cimport orient
+from penink_cli.ground._compiled.memory cimport grow, room
 from penink_cli.reconstruction._compiled.lanes cimport Four, above_four, all_four, four_at, lowest
 from penink_cli.reconstruction._compiled.scene cimport BLOCK, Scene
 
@@ -67,11 +68,11 @@ cdef class Views:
         self.radius = radius
         self.window = 1.0 + 0.5 * sqrt(reach * reach - 4.0)
         self.size = 1024
-        self.node = <int*>malloc(self.size * sizeof(int))
-        self.following = <int*>malloc(self.size * sizeof(int))
-        self.length = <double*>malloc(self.size * sizeof(double))
-        self.alive = <unsigned int*>malloc(32 * sizeof(unsigned int))
-        self.edge_stamp = <int*>malloc((scene.n_edges + 1) * sizeof(int))
+        self.node = <int*>room(self.size, sizeof(int))
+        self.following = <int*>room(self.size, sizeof(int))
+        self.length = <double*>room(self.size, sizeof(double))
+        self.alive = <unsigned int*>room(32, sizeof(unsigned int))
+        self.edge_stamp = <int*>room((scene.n_edges + 1), sizeof(int))
         for k in range(scene.n_edges):
             self.edge_stamp[k] = 0
 
@@ -83,15 +84,15 @@ cdef class Views:
         free(self.alive)
         free(self.edge_stamp)
 
-    cdef void look(self, int row0, int row1) noexcept nogil:
+    cdef int look(self, int row0, int row1) except -1 nogil:
         """Find what the samples of these rows see."""
         cdef Py_ssize_t k
         cdef int row
         cdef int across = self.scene.node_across
         cdef Py_ssize_t n = <Py_ssize_t>(row1 - row0) * self.scene.width
         if n > self.room:
+            grow(<void**>&self.head, n, sizeof(int))
             self.room = n
-            self.head = <int*>realloc(self.head, n * sizeof(int))
         for k in range(n):
             self.head[k] = -1
         self.row0 = row0
@@ -103,7 +104,7 @@ cdef class Views:
             for k in range(self.scene.node_start[row * across], self.scene.node_start[(row + 1) * across]):
                 self.look_from(self.scene.node_sorted[k])
 
-    cdef void look_from(self, int n) noexcept nogil:
+    cdef int look_from(self, int n) except -1 nogil:
         """Find the samples that see one node."""
         cdef int k, e, row, left, right, base
         cdef unsigned int seen
@@ -119,7 +120,7 @@ cdef class Views:
         r0 = self.row0 if r0 < self.row0 else r0
         r1 = self.row1 - 1 if r1 >= self.row1 else r1
         if c0 > c1 or r0 > r1:
-            return
+            return 0
         seen = ALL >> (31 - (c1 - c0))
         for row in range(r1 - r0 + 1):
             self.alive[row] = seen
@@ -141,7 +142,7 @@ cdef class Views:
             for k in range(r1 - r0 + 1):
                 seen |= self.alive[k]
             if seen == 0:
-                return
+                return 0
         self.enter(n, c0, c1, r0, r1)
 
     cdef void block(self, int n, int e, int c0, int c1, int r0, int r1) noexcept nogil:
@@ -200,7 +201,7 @@ cdef class Views:
                         hidden |= 1 << k
                 self.alive[i - r0] &= ~(<unsigned int>hidden << (j - c0))
 
-    cdef void enter(self, int n, int c0, int c1, int r0, int r1) noexcept nogil:
+    cdef int enter(self, int n, int c0, int c1, int r0, int r1) except -1 nogil:
         """Note a node for the samples left, those of them it is worth their while to."""
         cdef int i, j
         cdef double x, y, d
@@ -218,10 +219,10 @@ cdef class Views:
                 if d >= self.reach or not worth(x, y, d, self.radius):
                     continue
                 if self.used == self.size:
+                    grow(<void**>&self.node, 2 * self.size, sizeof(int))
+                    grow(<void**>&self.following, 2 * self.size, sizeof(int))
+                    grow(<void**>&self.length, 2 * self.size, sizeof(double))
                     self.size *= 2
-                    self.node = <int*>realloc(self.node, self.size * sizeof(int))
-                    self.following = <int*>realloc(self.following, self.size * sizeof(int))
-                    self.length = <double*>realloc(self.length, self.size * sizeof(double))
                 s = <Py_ssize_t>(i - self.row0) * self.scene.width + j
                 self.node[self.used] = n
                 self.length[self.used] = d

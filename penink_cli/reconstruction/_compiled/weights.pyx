@@ -23,7 +23,7 @@ cdef int clamp(int k, int n) noexcept nogil:
 cdef double weigh(
     Finder finder, double px, double py, int j0, int i0, double* xc, double* xb, int nx, double* yc, double* yb, int ny,
     double r, bint only_b, double* out,
-) noexcept nogil:
+) except -1 nogil:
     """Weights of the ny × nx taps from (row i0, column j0) on, which sum to one; returned, how starved the point is.
 
     Taps beyond the frame are replicated: the weight of their own place, the visibility and detour of their source.

@@ -1,0 +1,1 @@
+"""Compiled: what kernels of all rooms cimport."""
