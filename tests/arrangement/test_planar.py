@@ -8,7 +8,7 @@ from penink_cli.arrangement.planar import planar
 
 
 def grid(segments=40):
-    """Segments with both ends in one cell, so that there is room for short ones alone; then the ends are moved apart."""
+    """Segments with both ends in one cell, with room for short ones alone; then the ends are moved apart."""
     vertices = np.array([[10 + k % 2, 10 + 3 * k] for k in range(2 * segments)], np.int64)
     held = planar(400, 400, vertices, np.arange(2 * segments, dtype=np.int32).reshape(-1, 2))
     at = np.asarray(held.vertices)

@@ -22,11 +22,12 @@ KERNELS = {
 }
 TWINS = {"separable_avx2", "separable"}  # one of them runs, by processor
 SEARCH = ["search", "views", "nodes", "surroundings", "tile", "desk"]
+EDGES = ("-e", "crowd.edges.json")
 COMMANDS = [
-    (["enlarge", "small.pgm", "-e", "crowd.edges.json", "--scale", "6", "--threads", "2"], [*SEARCH, "sweep"]),
-    (["enlarge", "small.pgm", "-e", "crowd.edges.json", "--scale", "6", "--maxval", "65535"], [*TWINS]),
-    (["enlarge", "small.pgm", "-e", "crowd.edges.json", "--scale", "0.4"], ["search"]),
-    (["reduce", "small.pgm", "-e", "crowd.edges.json", "--factor", "3", *"--fit lsq --photo small.pgm".split()], SEARCH),
+    (["enlarge", "small.pgm", *EDGES, "--scale", "6", "--threads", "2"], [*SEARCH, "sweep"]),
+    (["enlarge", "small.pgm", *EDGES, "--scale", "6", "--maxval", "65535"], [*TWINS]),
+    (["enlarge", "small.pgm", *EDGES, "--scale", "0.4"], ["search"]),
+    (["reduce", "small.pgm", *EDGES, "--factor", "3", "--fit", "lsq", "--photo", "small.pgm"], SEARCH),
     (["compose", "small.pgm", "--width", "1in"], ["filters"]),
 ]
 
