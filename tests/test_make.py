@@ -110,10 +110,10 @@ def test_nothing_in_a_name_is_run(folder):
     assert not (folder / "pwned").exists()
 
 
-@pytest.mark.parametrize(
-    "name",
-    ["a b", " a", "a\tb", "a b.pgm c", "a:b", ";id", "a;id", "a=b", "a|b", "a%b", "a*", "a?", "[1]", "a\\b", "~a", "#a"],
-)
+UNTAKEN = ["a b", " a", "a\tb", "a b.pgm c", "a:b", ";id", "a;id", "a=b", "a|b", "a%b", "a*", "a?", "[1]", "a\\b", "~a", "#a"]
+
+
+@pytest.mark.parametrize("name", UNTAKEN)
 def test_what_make_cannot_take_is_refused_by_name_before_anything_runs(folder, name):
     gallery(folder, "fine.pgm", f"{name}.pgm")
     done = make(folder, "all")

@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from penink_cli.arrangement._compiled import points as _points
 from penink_cli.arrangement.gradient import EdgePoints
+from penink_cli.ground import exact
 from penink_cli.ground.model import Floats
 
 Ints32 = npt.NDArray[np.int32]
@@ -59,6 +60,6 @@ def chain_lengths(chains: Chains, position: Floats) -> Floats:
     if not len(chains):
         return np.zeros(0)
     steps = np.zeros(len(chains.order))
-    steps[1:] = np.hypot(*np.diff(position[chains.order], axis=0).T)
+    steps[1:] = exact.length(np.diff(position[chains.order], axis=0))
     steps[chains.first[:-1]] = 0
     return np.add.reduceat(steps, chains.first[:-1])

@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from penink_cli.arrangement.chains import Chains
 from penink_cli.arrangement.gradient import EdgePoints
+from penink_cli.ground import exact
 from penink_cli.ground.model import Floats
 
 Ints32 = npt.NDArray[np.int32]
@@ -89,18 +90,18 @@ def _corners(
             mean += q / stretch
             slope += t[k] / (t * t).sum() * q
             bend += square[k] / (square * square).sum() * q
-        size = np.maximum(1e-9, np.hypot(*slope.T))[:, None]
+        size = np.maximum(1e-9, exact.length(slope))[:, None]
         return mean - slope * (stretch - 1) / 2, -slope / size, bend * (stretch - 1) ** 2 / 4
 
     before, back, bow_back = line(-1)
     after, on, bow_on = line(1)
-    turn = np.arccos(np.clip(-(back * on).sum(axis=1), -1, 1))
+    turn = exact.acos(np.clip(-(back * on).sum(axis=1), -1, 1))
     way = np.sign(cross(back, -on))
     bows = [way * cross(back, bow_back), way * cross(bow_on, on)]  # positive where they bend as the corner does
     # What a circle that bends as the stretches do would turn in between.
     steady = 4 * (bows[0] + bows[1]) / stretch**2 * (2 * skip + stretch)
     corner, ahead, behind = crossing(before, back, after, on)
-    shift = np.hypot(*(corner - p[at]).T)
+    shift = exact.length(corner - p[at])
     inside = ((corner > 0) & (corner < shape[::-1])).all(axis=1)
     bow_error = unsure * np.sqrt(2 / (square * square).sum()) * (stretch - 1) ** 2 / 4
     doubt = 4 * bow_error / stretch**2 * (2 * skip + stretch)

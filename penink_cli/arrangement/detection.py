@@ -18,6 +18,7 @@ from penink_cli.arrangement.junctions import settle_junctions
 from penink_cli.arrangement.planar import from_units, planar, to_units
 from penink_cli.arrangement.simplification import simplify
 from penink_cli.arrangement.smoothing import position_error, smooth, unbend
+from penink_cli.ground import exact
 from penink_cli.ground.model import EdgeList, Floats
 
 TOLERANCE = 0.3
@@ -57,7 +58,7 @@ def detect_edges(
     noise = noise_level(grey)
     if sigma is None:
         sigma = float(np.clip(0.3 + 0.225 * 255 * noise, 0.6, 1.6))
-    steepness = 1 / (np.sqrt(2 * np.pi) * np.hypot(sigma, _CAMERA_BLUR))  # of an edge of step 1, grey per pixel
+    steepness = 1 / (np.sqrt(2 * np.pi) * exact.hypot(sigma, _CAMERA_BLUR))  # of an edge of step 1, grey per pixel
     unrest = noise / (5.013 * sigma * sigma) / steepness  # the noise of the gradient, as a step
     high = max(0.05, 6 * unrest) if high is None else high
     low = min(max(0.5 * high, 3.5 * unrest) if low is None else low, high)
@@ -94,7 +95,9 @@ def _blur(points: EdgePoints, chains: Chains, sigma: float) -> float:
     """Whole blur (pixels) that edges are seen through: the photo's, its pixels' and the detector's."""
     widths = points.width[chains.order]
     widths = widths[widths > 0]
-    return float(np.clip(np.median(widths), sigma, 3 * sigma)) if len(widths) else float(np.hypot(sigma, _CAMERA_BLUR))
+    if not len(widths):
+        return float(exact.hypot(sigma, _CAMERA_BLUR))
+    return float(np.clip(np.median(widths), sigma, 3 * sigma))
 
 
 def _telling(points: EdgePoints, chains: Chains, high: float, min_length: float, sigma: float) -> Chains:
@@ -112,7 +115,7 @@ def _telling(points: EdgePoints, chains: Chains, high: float, min_length: float,
     steepness = points.magnitude[order]
     contrast = np.add.reduceat(steepness, first) / np.maximum(np.add.reduceat(points.surround[order], first), 1e-12)
     position = points.position[order]
-    extent = np.hypot(*(np.maximum.reduceat(position, first) - np.minimum.reduceat(position, first)).T)
+    extent = exact.length(np.maximum.reduceat(position, first) - np.minimum.reduceat(position, first))
     size = contrast * np.sqrt(extent) * np.maximum(1, contrast / _ALONE) ** 2
     candidates = (
         (size >= _BRIDGE * TELLING)

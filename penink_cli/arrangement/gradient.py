@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from penink_cli.arrangement._compiled import points as _points
+from penink_cli.ground import exact
 from penink_cli.ground import threads as threading
 from penink_cli.ground.model import Floats
 
@@ -54,7 +55,7 @@ class EdgePoints:
     @property
     def magnitude(self) -> Floats:
         """Steepness (n,), grey per pixel."""
-        return np.hypot(self.gradient[:, 0], self.gradient[:, 1])
+        return exact.length(self.gradient)
 
     def where(self, wanted: npt.NDArray[np.bool_]) -> EdgePoints:
         """The points for which wanted (n,) holds; the old points' index is used up."""

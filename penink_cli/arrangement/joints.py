@@ -11,6 +11,7 @@ from penink_cli.arrangement._compiled import points as _points
 from penink_cli.arrangement.chains import Chains
 from penink_cli.arrangement.corners import crossing
 from penink_cli.arrangement.gradient import EdgePoints
+from penink_cli.ground import exact
 from penink_cli.ground.model import Floats
 
 Ints32 = npt.NDArray[np.int32]
@@ -75,7 +76,7 @@ def loose_ends(points: EdgePoints, chains: Chains, blur: float, hosts: npt.NDArr
     p0, p1 = position[at + inward * trim], position[at + inward * np.minimum(trim + third, length - 1)]
     p2 = position[at + inward * np.minimum(trim + 2 * third, length - 1)]
     direction = np.where((length - 1 - trim < 4)[:, None], p0 - p1, 3 * p0 - 4 * p1 + p2)
-    direction /= np.maximum(1e-9, np.hypot(*direction.T))[:, None]
+    direction /= np.maximum(1e-9, exact.length(direction))[:, None]
 
     chain, place = np.full(count, -1, np.int32), np.zeros(count, np.int32)
     owner = chains.owner

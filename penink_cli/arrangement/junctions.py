@@ -27,6 +27,7 @@ from penink_cli.arrangement._compiled.planar import Planar
 from penink_cli.arrangement._compiled.regions import FINENESS
 from penink_cli.arrangement._compiled.settling import Settler
 from penink_cli.arrangement.planar import UNIT
+from penink_cli.ground import exact
 from penink_cli.ground import threads as threading
 from penink_cli.ground.model import Floats
 
@@ -65,7 +66,7 @@ def settle_junctions(
     right, bottom = round(width / UNIT) - 1, round(height / UNIT) - 1
     spare, spare_vertices = (np.flatnonzero(which).astype(np.int32) for which in (~live, unused))
     exchange = Exchange(planar, spare, spare_vertices, UNIT, right, bottom)
-    spread = math.hypot(lens, math.sqrt(1 / 12))
+    spread = math.sqrt(lens * lens + 1 / 12)
     near = 3.0 * blur + 1.0  # how far blur may have moved things apart
     halo = min(5, math.ceil(2.5 * spread))
     photo, taps = np.ascontiguousarray(grey, np.float32), _taps(lens)
@@ -139,7 +140,7 @@ def _sites(planar: Planar, step: Floats, near: float, width: int, height: int) -
     owner = np.full(len(at), -1, np.int32)
     owner[special] = group
     a, b = np.concatenate([ends, ends[:, ::-1]]).T
-    short = np.linalg.norm(at[a] - at[b], axis=1) < _BESIDE * near
+    short = exact.length(at[a] - at[b]) < _BESIDE * near
     next_to = np.flatnonzero(short & (owner[a] >= 0) & (owner[a] != owner[b]) & inside[b])
     beside: dict[int, set[int]] = defaultdict(set)
     for k, v in zip(owner[a[next_to]].tolist(), b[next_to].tolist()):
@@ -172,7 +173,7 @@ def _special(planar: Planar, at: Floats, ends: Ints32, near: float) -> Ints32:
     turn[middle] = _angle(at[before[middle]], at[middle], at[after[middle]])
     most = np.abs(turn)
     a, b = ends[middle[ends].all(axis=1)].T
-    short = np.hypot(*(at[a] - at[b]).T) < near
+    short = exact.length(at[a] - at[b]) < near
     a, b = a[short], b[short]
     both = np.abs(np.where(after[a] == b, turn[a], -turn[a]) + np.where(before[b] == a, turn[b], -turn[b]))
     np.maximum.at(most, a, both)
@@ -195,13 +196,13 @@ def _on_curve(turn: Floats, before: Ints32, after: Ints32, middle: npt.NDArray[n
 def _angle(p: Floats, q: Floats, r: Floats) -> Floats:
     """How far the ways p, q, r (n, 2) turn at q, radians, positive to the right on the screen."""
     (ux, uy), (vx, vy) = (q - p).T, (r - q).T
-    return np.asarray(np.arctan2(ux * vy - uy * vx, ux * vx + uy * vy))
+    return np.asarray(exact.atan2(ux * vy - uy * vx, ux * vx + uy * vy))
 
 
 def _taps(lens: float) -> Floats:
     """What each of `FINENESS` points a pixel gives to a pixel along one axis: the lens's Gaussian over its width."""
     fine = int(FINENESS)
     reach = min(fine * 5, math.ceil(fine * 2.5 * lens) + fine // 2)
-    gauss = [math.exp(-0.5 * (d / (fine * lens)) ** 2) for d in range(-reach - 1, reach + 2)]
+    gauss = [float(exact.exp(-0.5 * (d / (fine * lens)) ** 2)) for d in range(-reach - 1, reach + 2)]
     taps = [math.fsum(gauss[k : k + fine]) for k in range(2 * reach + 1)]
     return np.array(taps) / math.fsum(taps)

@@ -7,6 +7,7 @@ import numpy as np
 from penink_cli.arrangement._compiled import curves as _curves
 from penink_cli.arrangement.chains import Chains
 from penink_cli.arrangement.gradient import EdgePoints
+from penink_cli.ground import exact
 from penink_cli.ground.model import Floats
 
 _OWN_ERROR = 0.01  # pixels: of a point in a picture without noise
@@ -22,8 +23,8 @@ def position_error(points: EdgePoints, noise: float, sigma: float, blur: float) 
     3 noise² / 16 π σ⁶; an edge of gradient g whose whole blur is b has the slope g / b² there.
     Neighbouring points share a stretch of 2 σ of noise, which counts as if each had that much more.
     """
-    unrest = noise * np.sqrt(3 / (16 * np.pi)) / sigma**3
-    return np.hypot(_OWN_ERROR, np.sqrt(2 * sigma) * unrest * blur * blur / np.maximum(points.magnitude, 1e-6))
+    unrest = noise * np.sqrt(3 / (16 * np.pi)) / (sigma * sigma * sigma)
+    return exact.hypot(_OWN_ERROR, np.sqrt(2 * sigma) * unrest * blur * blur / np.maximum(points.magnitude, 1e-6))
 
 
 def smooth(position: Floats, chains: Chains, error: Floats) -> Floats:
@@ -47,7 +48,7 @@ def smooth(position: Floats, chains: Chains, error: Floats) -> Floats:
     while True:
         places = np.ascontiguousarray(position[order])
         _curves.smooth(places, roughness**2 / error[order] ** 2, first, room)
-        moved = np.hypot(*(places - position[order]).T) / error[order]
+        moved = exact.length(places - position[order]) / error[order]
         if roughness > _ROUGHEST or np.median(moved[inner]) <= _MOST_MOVED:
             break
         roughness *= 2
@@ -77,10 +78,10 @@ def unbend(points: EdgePoints, chains: Chains, blur: float) -> Floats:
     before = p[first + (middle - step) % length]
     after = p[first + (middle + step) % length]
     back, on = here - before, after - here
-    far, near = np.hypot(*back.T)[:, None], np.hypot(*on.T)[:, None]
+    far, near = exact.length(back)[:, None], exact.length(on)[:, None]
     bend = 2 * (on / np.maximum(near, 1e-9) - back / np.maximum(far, 1e-9)) / np.maximum(far + near, 1e-9)
     bend[length < 2 * step + 1] = 0
     shift = -0.5 * blur * blur * bend
-    size = np.hypot(*shift.T)[:, None]
+    size = exact.length(shift)[:, None]
     position[chains.order] += shift * np.minimum(1, 0.5 * blur / np.maximum(size, 1e-9))
     return position

@@ -147,7 +147,7 @@ def lattice(
     c, s = sweep.heading(layer.angle)
     along, across = np.array([c, s]), np.array([-s, c])
     corners = np.array([[0, 0], [sheet.width, 0], [0, sheet.height], [sheet.width, sheet.height]], float)
-    u_range, v_range = corners @ along, corners @ across
+    u_range, v_range = (corners[:, 0] * axis[0] + corners[:, 1] * axis[1] for axis in (along, across))
     rows, places = np.arange(v_range.min(), v_range.max(), apart), np.arange(u_range.min(), u_range.max(), length / 2)
     u = (places[None, :] + rng.uniform(-0.5, 0.5, (len(rows), 1)) * length / 2).ravel()
     u = u + rng.uniform(-0.2, 0.2, len(u)) * length

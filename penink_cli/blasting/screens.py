@@ -25,6 +25,7 @@ import numpy as np
 import numpy.typing as npt
 
 from penink_cli.blasting.tile import thresholds
+from penink_cli.ground import exact
 from penink_cli.ground.angles import direction
 from penink_cli.ground.device import DOT
 from penink_cli.ground.model import Floats, HatchLayer, Ints, Texture
@@ -225,7 +226,7 @@ def strokes(texture: Texture) -> Screen:
             points.append((first + np.floor((segment - segment[0]) / GRID_PT + 0.5)) * GRID_PT)
             limits.append(float(np.floor(enters[i] * 255)) / 255)
             # whole strokes count with their round ends, runs without
-            equal.append(float(np.hypot(*(points[-1][3] - points[-1][0]))) + (0.785 * pen if texture.whole else 0.0))
+            equal.append(float(exact.length(points[-1][3] - points[-1][0])) + (0.785 * pen if texture.whole else 0.0))
     control = np.array(points).reshape(-1, 4, 2)
     at = np.array(limits)
     lengths = np.append(0, np.cumsum(equal)) / (tile.width * tile.height)

@@ -111,7 +111,7 @@ def hatch(
     c, s = heading(layer.angle)
     along, across = np.array([c, s]), np.array([-s, c])
     corners = np.array([[0, 0], [sheet.width, 0], [0, sheet.height], [sheet.width, sheet.height]], float)
-    u_range, v_range = corners @ along, corners @ across
+    u_range, v_range = (corners[:, 0] * axis[0] + corners[:, 1] * axis[1] for axis in (along, across))
     u0, v0 = u_range.min() - PAD_PT, v_range.min() - PAD_PT
     columns = int((u_range.max() + PAD_PT - u0) / COLUMN_PT) + 1
     rows = int((v_range.max() + PAD_PT - v0) / ROW_PT) + 2

@@ -59,7 +59,7 @@ def chosen_mix(colours: Picture, pixels_per_pt: float) -> Weights:
     wanted = [np.sqrt(_squares(seen[a] - seen[b])) / 100 for a, b in pairs]
     kept = [w > _UNSEEN for w in wanted]
     wanted = [w[k] for w, k in zip(wanted, kept)]
-    whole = sum(_total(w) for w in wanted)
+    whole = sum(_total(w) for w in wanted)  # whole numbers
     if not whole:
         return LUMA
     best: tuple[float, Weights] | None = None

@@ -32,7 +32,8 @@ def check(edges: EdgeList) -> None:
     swap = rank[edges.edges[:, 0]] > rank[edges.edges[:, 1]]
     start = np.where(swap, edges.edges[:, 1], edges.edges[:, 0]).astype(np.intc)
     end = np.where(swap, edges.edges[:, 0], edges.edges[:, 1]).astype(np.intc)
-    slope = np.arctan2(y[end] - y[start], x[end] - x[start])
+    down, across = y[end] - y[start], x[end] - x[start]  # across from 0 on, down above 0 where it is 0
+    slope = np.where(across > 0, down / np.where(across > 0, across, 1.0), np.inf)
     leaving = np.lexsort((slope, start)).astype(np.intc)
     first = np.zeros(len(x) + 1, np.intc)
     np.cumsum(np.bincount(start, minlength=len(x)), out=first[1:])

@@ -12,6 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from penink_cli.ground import exact
 from penink_cli.ground.model import Floats, Strokes
 
 #: Which part of a pixel's width the edges of a stroke gain, times |cos θ| + |sin θ|.
@@ -31,7 +32,7 @@ def gains(strokes: Strokes, dpi: float) -> Floats:
     if not len(strokes):
         return np.zeros(0)
     across = np.add.reduceat(np.abs(steps).sum(axis=1), strokes.first[:-1])
-    length = np.add.reduceat(np.hypot(*steps.T), strokes.first[:-1])
+    length = np.add.reduceat(exact.length(steps), strokes.first[:-1])
     mean: Floats = np.where(length > 0, EDGE * across / np.where(length > 0, length, 1.0), DOT)
     return mean * (72 / dpi)
 

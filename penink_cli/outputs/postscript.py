@@ -27,6 +27,7 @@ import numpy as np
 import numpy.typing as npt
 
 from penink_cli.formats.strokes import Sink
+from penink_cli.ground import exact
 from penink_cli.ground.model import Floats, Ints, Strokes
 from penink_cli.outputs import swelling, words
 from penink_cli.outputs.page import Page, ink_box
@@ -323,7 +324,7 @@ def _bends(segments: Floats) -> tuple[Ints, Ints]:
     thirds would move its ink by more than half a unit.
     """
     chord = segments[:, 3] - segments[:, 0]
-    length = np.hypot(*chord.T)
+    length = exact.length(chord)
     safe = np.where(length > 0, length, 1.0)
     along, left = np.empty((2, len(segments))), np.empty((2, len(segments)))
     for i, third in enumerate((1 / 3, 2 / 3)):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from penink_cli.ground import exact
 from penink_cli.ground.model import EdgeList, Floats
 
 LEAST_BLUR, MOST_BLUR = 0.4, 3.0
@@ -40,7 +41,7 @@ def camera_blur(grey: npt.NDArray[np.floating], edges: EdgeList) -> float:
     pixels = np.ascontiguousarray(grey).ravel()
     place, onward = row * width + column, np.where(along_x, 1, width)
     offsets = np.arange(-2, 3)
-    taps = np.exp(-0.5 * (offsets / _SMOOTH) ** 2)
+    taps = exact.exp(-0.5 * (offsets / _SMOOTH) ** 2)
     taps /= taps.sum()
     variance = float((taps * offsets**2).sum())
 
@@ -67,7 +68,7 @@ def camera_blur(grey: npt.NDArray[np.floating], edges: EdgeList) -> float:
     if usable.sum() < _FEW:
         return USUAL_BLUR
     before, here, after = before[usable], here[usable], after[usable]
-    bend = -np.log(before / here) - np.log(after / here)
+    bend = -exact.log(before / here) - exact.log(after / here)
     cosine = np.maximum(np.abs(normals[usable, 0]), np.abs(normals[usable, 1]))
     width2 = np.where(bend > 1e-3, cosine**2 / np.maximum(bend, 1e-3), np.inf)
     square = float(np.quantile(width2, 0.35)) - variance - _OWN
@@ -78,7 +79,7 @@ def _looks(edges: EdgeList, width: int, height: int) -> tuple[Floats, Floats]:
     """Places (n, 2) spread evenly over the edges, and the normals (n, 2) there."""
     vertices = edges.scaled(width, height)
     a, b = vertices[edges.edges[:, 0]], vertices[edges.edges[:, 1]]
-    length = np.hypot(*(b - a).T)
+    length = exact.length(b - a)
     total = float(length.sum())
     if not total:
         return np.zeros((0, 2)), np.zeros((0, 2))

@@ -13,6 +13,7 @@ from collections.abc import Callable
 import numpy as np
 import numpy.typing as npt
 
+from penink_cli.ground import exact
 from penink_cli.ground import threads as threading
 from penink_cli.ground.model import EdgeList, Floats
 from penink_cli.reconstruction._compiled import clean as _clean
@@ -61,7 +62,7 @@ def extract_samples(
     out = np.empty_like(values)
     steps = math.ceil(margin) + 3
     reach = _clean.MAX_REACH
-    table = np.array([math.exp(-d * d / (2 * _SPREAD * _SPREAD)) for d in range(-reach, reach + 1)])
+    table = exact.exp(np.array([-d * d / (2 * _SPREAD * _SPREAD) for d in range(-reach, reach + 1)]))
 
     def rows(first: int, last: int) -> None:
         _clean.extrapolate(values, ground, distance, margin, first, last, steps, _SPREAD, _STIFFNESS, table, out)

@@ -20,6 +20,7 @@ from functools import partial
 import numpy as np
 import numpy.typing as npt
 
+from penink_cli.ground import exact
 from penink_cli.ground import threads as threading
 from penink_cli.ground.model import EdgeList, Floats
 from penink_cli.reconstruction import lanes
@@ -50,7 +51,7 @@ def blur_kernel(blur: float) -> Floats:
     if blur < 0.05:
         return np.ones(1)
     reach = max(1, math.ceil(3.5 * blur))
-    weights = [math.exp(-0.5 * (d / blur) ** 2) for d in range(reach + 1)]
+    weights = [float(exact.exp(-0.5 * (d / blur) ** 2)) for d in range(reach + 1)]
     whole = weights[0] + 2 * math.fsum(weights[1:])
     return np.array([w / whole for w in weights])
 

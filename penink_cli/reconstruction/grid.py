@@ -19,6 +19,7 @@ from itertools import count
 import numpy as np
 import numpy.typing as npt
 
+from penink_cli.ground import exact
 from penink_cli.ground.errors import ParameterError
 from penink_cli.ground.model import EdgeList
 from penink_cli.reconstruction._compiled import walls as _walls
@@ -51,7 +52,7 @@ class _View:
 
     def smaller(self, most: int) -> _View:
         """The same of at most so many pixels, more or less, each the mean of those that it covers."""
-        shrink = (self.picture.size / most) ** 0.5
+        shrink = math.sqrt(self.picture.size / most)
         if shrink <= 1:
             return self
         return _View(shrunk(self.picture, shrink), self.blur / shrink, AREA)
@@ -135,7 +136,7 @@ def choose_grid(
     while chosen.error > max_error and side < long:
         # the photo's noise, most of which a smaller view does not have, leaves that much less to the grid
         unseen = max(0.0, chosen.error**2 - attempt(side, quick).error ** 2)
-        side = serving(search(max(0.0, max_error**2 - unseen) ** 0.5, _FINER * side))
+        side = serving(search(math.sqrt(max(0.0, max_error**2 - unseen)), _FINER * side))
         chosen = attempt(side, exact)
     if chosen.error > max_error:
         raise ParameterError(
@@ -193,15 +194,15 @@ def _least_within(limit: float, sides: list[int], error: Callable[[int], float],
         if high - low <= 1:
             return sides[high]
         coarse, fine = sides[max(0, low)], sides[high]
-        guess = (coarse * fine) ** 0.5
+        guess = math.sqrt(coarse * fine)
         if limit > 0 and tries % 3 < 2:  # a guess may do little to narrow the range, halving does not
             power = _POWER
             if coarse in known and fine in known:
-                power = max(0.1, math.log(known[coarse] / max(known[fine], 1e-9)) / math.log(fine / coarse))
+                power = max(0.1, float(exact.log(known[coarse] / max(known[fine], 1e-9)) / exact.log(fine / coarse)))
             if coarse in known:
-                guess = coarse * (known[coarse] / limit) ** (1 / power)
+                guess = coarse * float(exact.power(known[coarse] / limit, 1 / power))
             elif fine in known:
-                guess = fine * (known[fine] / limit) ** (1 / power)
+                guess = fine * float(exact.power(known[fine] / limit, 1 / power))
         at = bisect_left(sides, guess, low + 1, high - 1)
         known[sides[at]] = error(sides[at])
     raise AssertionError

@@ -29,7 +29,7 @@ def spill(radius: float) -> int:
     along that axis; here δ is 1 … 2 and d at most √(δ² + 4). For r = 1 that is 0.78.
     """
     across = max(
-        0.5 * math.sqrt(delta * delta + 2.0 * radius * math.hypot(delta, 2.0) + radius * radius) - 0.5 * delta
+        0.5 * math.sqrt(delta * delta + 2.0 * radius * math.sqrt(delta * delta + 4.0) + radius * radius) - 0.5 * delta
         for delta in (1.0, 1.25, 1.5, 1.75, 2.0)
     )
     return math.ceil(across + 0.1)

@@ -12,6 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from penink_cli.ground import exact
 from penink_cli.ground.angles import direction
 from penink_cli.ground.device import DOT, MEAN
 from penink_cli.ground.model import Floats, HatchLayer, Strokes, Texture
@@ -64,7 +65,7 @@ def fill(
         length = max(polygon_length(strokes[best]), pen * 0.8)
         torus.add(samples[best], length)
         rows, columns = torus.cells(samples[best])
-        keep = math.exp(-length / len(rows) * pen / cell)
+        keep = exact.exp(-length / len(rows) * pen / cell)
         for r, c in zip(rows.tolist(), columns.tolist(), strict=True):
             was = bare[r, c]
             bare[r, c] = was * keep
@@ -84,7 +85,7 @@ def along_curve(strokes: Floats) -> Floats:
     parts = []
     for j in range(k):
         p = strokes[:, 3 * j : 3 * j + 4, None]
-        parts.append(u**3 * p[:, 0] + 3 * u * u * t * p[:, 1] + 3 * u * t * t * p[:, 2] + t**3 * p[:, 3])
+        parts.append(u * u * u * p[:, 0] + 3 * u * u * t * p[:, 1] + 3 * u * t * t * p[:, 2] + t * t * t * p[:, 3])
     return np.concatenate(parts, axis=1)
 
 
@@ -155,8 +156,8 @@ def wavy(stroke: Floats, angle: float, wave: float, wave_length: float) -> Float
     p = along_curve(stroke[None])[0]
     p = np.concatenate([p[:: max(1, round(wave_length / 4))], stroke[-1:]])
     turns = max(1, round(TILE_PT / wave_length))
-    phase = 2 * math.pi * (turns * p @ np.array([1.0, 0.0]) + turns * p @ np.array([0.0, 1.0])) / TILE_PT
-    p = p + np.sin(phase)[:, None] * wave * across
+    phase = 2 * math.pi * ((turns * p)[:, 0] + (turns * p)[:, 1]) / TILE_PT
+    p = p + exact.cos_sin(phase)[1][:, None] * wave * across
     slope = np.gradient(p, axis=0) / 3
     inner = np.stack([p[:-1] + slope[:-1], p[1:] - slope[1:], p[1:]], axis=1).reshape(-1, 2)
     return np.concatenate([p[:1], inner])
@@ -210,7 +211,7 @@ def scribble(angle: float, pen: float, spacing: float, layers: int, seed: int) -
         heading = np.cumsum(
             np.column_stack([rng.uniform(0, 2 * math.pi, n), rng.normal(1.05, 0.55, (n, knots - 1))]), 1
         )
-        step = rng.uniform(3.0, 6.0, (n, knots))[..., None] * np.stack([np.cos(heading), np.sin(heading)], axis=2)
+        step = rng.uniform(3.0, 6.0, (n, knots))[..., None] * np.stack(exact.cos_sin(heading), axis=2)
         p = np.cumsum(step, axis=1)
         p = p - p.mean(axis=1, keepdims=True) + rng.uniform(0, size, (n, 1, 2))
         slope = np.gradient(p, axis=1) / 3
@@ -234,7 +235,7 @@ def grass(angle: float, pen: float, spacing: float, layers: int, seed: int) -> T
         out = np.empty((n, 4, 2))
         for j, (reach, turn) in enumerate(((0.0, 0.0), (0.34, 0.1), (0.7, 0.45), (1.0, 1.0))):
             a = lean + bend * turn
-            out[:, j] = foot + (reach * length)[:, None] * np.column_stack([np.cos(a), np.sin(a)])
+            out[:, j] = foot + (reach * length)[:, None] * np.column_stack(exact.cos_sin(a))
         return out
 
     strokes = fill(torus, blades, pen + GAIN_PT, FULL + 0.01, 0.0, 32, np.random.default_rng(seed))

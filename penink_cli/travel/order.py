@@ -11,6 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from penink_cli.ground import exact
 from penink_cli.ground.model import Floats, Ints, Strokes
 from penink_cli.travel._compiled import improve as _improve
 from penink_cli.travel._compiled import tree as _tree
@@ -80,7 +81,7 @@ def _tour(ends: Floats, improve: bool, advance: Callable[[int], None]) -> tuple[
     turned = flips[:n].astype(bool)
     beginning = ends[2 * opened[0] + turned[opened[0]]]
     finish = ends[2 * opened[-1] + 1 - turned[opened[-1]]]
-    if np.hypot(*finish) < np.hypot(*beginning):
+    if exact.length(finish) < exact.length(beginning):
         return opened[::-1], ~turned
     return opened, turned
 
@@ -124,7 +125,7 @@ def joined(strokes: Strokes, tolerance: float) -> Strokes:
         return strokes
     ends, starts = strokes.points[strokes.first[1:-1] - 1], strokes.points[strokes.first[1:-1]]
     drawn = np.diff(strokes.first) > 1
-    meet = np.hypot(*(ends - starts).T) <= tolerance
+    meet = exact.length(ends - starts) <= tolerance
     widths, knots = strokes.at_knots, strokes.knots
     meet &= (widths[knots[1:-1] - 1] == widths[knots[1:-1]]) & drawn[1:] & drawn[:-1]
     keep = np.ones(len(strokes.points), bool)
@@ -139,7 +140,7 @@ def joined(strokes: Strokes, tolerance: float) -> Strokes:
 def travel_length(strokes: Strokes) -> float:
     """Points from each stroke's end to the next one's beginning, all together."""
     ends, starts = strokes.points[strokes.first[1:-1] - 1], strokes.points[strokes.first[1:-1]]
-    return float(np.hypot(*(starts - ends).T).sum())
+    return float(exact.length(starts - ends).sum())
 
 
 def drawn_length(strokes: Strokes) -> float:
@@ -155,5 +156,5 @@ def drawn_length(strokes: Strokes) -> float:
     total = np.zeros(len(begins))
     for t, weight in zip((nodes + 1) / 2, weights / 2):
         speed = 3 * ((1 - t) ** 2 * a + 2 * t * (1 - t) * b + t * t * c)
-        total += weight * np.hypot(*speed.T)
+        total += weight * exact.length(speed)
     return float(total.sum())

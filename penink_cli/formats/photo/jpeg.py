@@ -196,7 +196,7 @@ def _tables(content: bytes, found: _File) -> None:
         kind, counts = content[at], content[at + 1 : at + 17]
         if kind >> 4 > 1 or kind & 15 > 3 or len(counts) < 16:
             raise ValueError
-        symbols = content[at + 17 : at + 17 + sum(counts)]
+        symbols = content[at + 17 : at + 17 + sum(counts)]  # whole numbers
         table = found.lookups[4 * (kind >> 4) + (kind & 15)]
         table[:] = 0
         place = taken = 0

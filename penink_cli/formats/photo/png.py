@@ -64,7 +64,8 @@ class _Header:
 
     def bytes(self) -> int:
         """Of all rows, each with the byte that names its filter."""
-        return sum(rows * (1 + (columns * self.bits_per_pixel + 7) // 8) for _, columns, rows in self.passes())
+        lengths = [rows * (1 + (columns * self.bits_per_pixel + 7) // 8) for _, columns, rows in self.passes()]
+        return sum(lengths)  # whole numbers
 
 
 def read(encoded: bytes, max_pixels: int, verdict: Verdict) -> Decoded:
