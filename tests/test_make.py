@@ -110,7 +110,8 @@ def test_nothing_in_a_name_is_run(folder):
     assert not (folder / "pwned").exists()
 
 
-UNTAKEN = ["a b", " a", "a\tb", "a b.pgm c", "a:b", ";id", "a;id", "a=b", "a|b", "a%b", "a*", "a?", "[1]", "a\\b", "~a", "#a"]
+UNTAKEN = ["a b", " a", "a\tb", "a b.pgm c", "a:b", ";id", "a;id", "a=b", "a|b", "a%b", "a*", "a?"]
+UNTAKEN += ["[1]", "a\\b", "~a", "#a"]
 
 
 @pytest.mark.parametrize("name", UNTAKEN)
