@@ -16,6 +16,7 @@ from functools import cache
 import numpy as np
 import numpy.typing as npt
 
+from penink_cli.ground import exact
 from penink_cli.ground import threads as threading
 from penink_cli.ground.model import Floats
 from penink_cli.lines._compiled import oriented
@@ -65,10 +66,10 @@ def _taps(
     for i in range(-r, r + 1):
         for j in range(-r, r + 1):
             u, v = j * x + i * y, i * x - j * y
-            low = math.exp(-0.5 * (u / along) ** 2)
-            wide = low * math.exp(-0.5 * (v / (WIDER * across)) ** 2)
+            low = float(exact.exp(-0.5 * (u / along) ** 2))
+            wide = low * float(exact.exp(-0.5 * (v / (WIDER * across)) ** 2))
             if wide > CUT:
-                taps.append((i + r, j + r, low * math.exp(-0.5 * (v / across) ** 2), wide))
+                taps.append((i + r, j + r, low * float(exact.exp(-0.5 * (v / across) ** 2)), wide))
     a, b = math.fsum(t[2] for t in taps), math.fsum(t[3] for t in taps)
     weights = [round(t[3] / b - t[2] / a, 9) for t in taps]
     weights[len(taps) // 2] -= math.fsum(weights)  # even ground answers with nothing

@@ -14,6 +14,7 @@ import numpy as np
 from scipy import ndimage
 
 from penink_cli.composition.filters import blurred
+from penink_cli.ground import exact
 from penink_cli.ground.model import Floats
 from penink_cli.lines.oriented import Picture
 
@@ -52,7 +53,7 @@ class Spot:
 
 def spots(picture: Picture, threads: int) -> list[Spot]:
     """Dark spots of a picture (h, w), those of the highest contrast first; none overlaps another."""
-    blurs = [blurred(picture, FINEST * RATIO**k, threads) for k in range(SCALES + 1)]
+    blurs = [blurred(picture, FINEST * float(exact.power(RATIO, k)), threads) for k in range(SCALES + 1)]
     steps = [wide - narrow for narrow, wide in pairwise(blurs)]
     candidates: list[tuple[float, int, int, int]] = []
     for k, step in enumerate(steps):
@@ -62,7 +63,7 @@ def spots(picture: Picture, threads: int) -> list[Spot]:
     taken = np.zeros(picture.shape, np.bool_)
     found = []
     for _, k, i, j in candidates[:MOST]:
-        if not taken[i, j] and (spot := _spot(blurs[0], taken, i, j, FITS * FINEST * RATIO**k)):
+        if not taken[i, j] and (spot := _spot(blurs[0], taken, i, j, FITS * FINEST * float(exact.power(RATIO, k)))):
             found.append(spot)
     return found
 
