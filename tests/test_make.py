@@ -162,5 +162,5 @@ def test_clean_keeps_the_kernels_sources():
     env = environment(MAKEFLAGS="")
     told = subprocess.run(["make", "-n", "clean"], cwd=ROOT, env=env, capture_output=True, text=True, check=True)
     words = told.stdout.split()
-    assert "penink_cli/geometry/_predicates.c" in words
+    assert "penink_cli/geometry/_compiled/predicates.c" in words
     assert not [word for word in words if word.endswith((".py", ".pyx", ".pxd", ".h"))]
