@@ -5,9 +5,11 @@
 
 from __future__ import annotations
 
+import inspect
 import os
 import re
 import sys
+import textwrap
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -95,9 +97,10 @@ def _examples(paragraphs: list[tuple[str, str]]) -> list[str]:
 def _paragraphs(text: str) -> list[tuple[str, str]]:
     r"""Paragraphs of a help text: ("text", one line), or ("lines", as they stand) after a \b."""
     result = []
-    for paragraph in re.split(r"\n\s*\n", re.sub(r"(?m)^ +$", "", text.strip("\n"))):
+    # CPython 3.13 takes the indentation off docstrings, earlier ones leave it.
+    for paragraph in re.split(r"\n\s*\n", re.sub(r"(?m)^ +$", "", inspect.cleandoc(text))):
         if paragraph.lstrip().startswith("\b"):
-            result.append(("lines", paragraph.lstrip()[1:].strip("\n")))
+            result.append(("lines", textwrap.dedent(paragraph.lstrip()[1:].strip("\n"))))
         else:
             result.append(("text", " ".join(paragraph.split())))
     return result

@@ -27,7 +27,7 @@ import numpy as np
 import numpy.typing as npt
 
 from penink_cli.formats.strokes import Sink
-from penink_cli.ground import exact
+from penink_cli.ground.exact import length as length_of
 from penink_cli.ground.model import Floats, Ints, Strokes
 from penink_cli.outputs import swelling, words
 from penink_cli.outputs.page import Page, ink_box
@@ -231,7 +231,7 @@ def _swelling(
     """The numbers of strokes that swell, where each stroke's begin, and where the last one ends."""
 
     def plain(points: Floats) -> npt.NDArray[np.bool_]:
-        return (_bends(points * units)[1] < 3) | (np.hypot(*(points[:, 3] - points[:, 0]).T) * units < 8)
+        return (_bends(points * units)[1] < 3) | (length_of(points[:, 3] - points[:, 0]) * units < 8)
 
     strokes = order(swelling.pieces(strokes, plain, CHAIN))
     segments = np.diff(strokes.first) // 3
@@ -324,7 +324,7 @@ def _bends(segments: Floats) -> tuple[Ints, Ints]:
     thirds would move its ink by more than half a unit.
     """
     chord = segments[:, 3] - segments[:, 0]
-    length = exact.length(chord)
+    length = length_of(chord)
     safe = np.where(length > 0, length, 1.0)
     along, left = np.empty((2, len(segments))), np.empty((2, len(segments)))
     for i, third in enumerate((1 / 3, 2 / 3)):
