@@ -5,6 +5,7 @@
 #   make figures    the paper's figures with our own pictures: samples/out/figures.pdf, .png and table1.md
 #   make bench      the measurements     make dist    wheel and source distribution
 #   make check-dist both, installed in an empty environment
+#   make check-roots  `make` and `make test` on an otherwise empty Debian 12 and 13 (ROOTS=bookworm)
 #   make fuzz       every reader against anything (SECONDS=600)
 #   make manual     the man pages and completion, from the help texts
 #   make torture    a thousand runs killed, two hundred photographs
@@ -20,37 +21,37 @@ INSTALLED := $(VENV)/.installed
 KERNELS   := $(shell find penink_cli -path '*/_compiled/*.pyx')
 BENCHES   := $(patsubst tests/benchmarks/%.py,tests.benchmarks.%,$(filter-out %/__init__.py %/_%,$(wildcard tests/benchmarks/*.py)))
 
-.PHONY: all install samples figures test lint bench fuzz torture manual dist check-dist clean needs needs-test needs-python
+.PHONY: all install samples figures test lint bench fuzz torture manual dist check-dist check-roots clean needs quick
 .DELETE_ON_ERROR:
 
 all: samples
 
 install: $(INSTALLED)
 
-# What only the system's package manager can bring; each is installed if permitted, else named.
+# What only the system's package manager can bring (.ci/packages): first of all, installed in one go if permitted, else named.
+NEEDS := $(if $(filter test quick bench,$(MAKECMDGOALS)),test,$(if $(filter install lint manual dist check-dist fuzz torture,$(MAKECMDGOALS)),install,make))
 needs:
-	@.ci/need gs ghostscript
-needs-test:
-	@.ci/need chromium-headless-shell chromium-headless-shell
-needs-python:
-	@PYTHON="$(PYTHON)" .ci/need python-venv python3-venv
-	@PYTHON="$(PYTHON)" .ci/need python-headers python3-dev
+	@PYTHON="$(PYTHON)" .ci/need $(NEEDS)
 
-$(INSTALLED): pyproject.toml penink_cli/__init__.py $(KERNELS) $(shell find penink_cli -path '*/_compiled/*.pxd' -o -path '*/_compiled/*.h') .build/compiling.py | needs-python
+$(INSTALLED): pyproject.toml penink_cli/__init__.py $(KERNELS) $(shell find penink_cli -path '*/_compiled/*.pxd' -o -path '*/_compiled/*.h') .build/compiling.py | needs
+	@echo "setting up $(VENV): two to five minutes, most of them for the kernels"
 	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[test,lint]'
 	touch $@
 
-samples: $(INSTALLED) needs
+samples: $(INSTALLED)
 	$(MAKE) -C samples PATH="$(BIN):$$PATH"
 
-figures: $(INSTALLED) needs
+figures: $(INSTALLED)
 	$(MAKE) -C samples figures PATH="$(BIN):$$PATH"
 	PATH="$(BIN):$$PATH" $(BIN)/python -m tests.benchmarks.illustrations --table samples/out > samples/out/table1.md
 	@cat samples/out/table1.md
 
-test: $(INSTALLED) needs needs-test
+test: $(INSTALLED)
 	PATH="$(BIN):$$PATH" $(BIN)/python -m pytest -n auto --dist worksteal $(TESTS)
+
+quick: $(INSTALLED)
+	PATH="$(BIN):$$PATH" $(BIN)/python -m pytest -n auto --dist worksteal -m "not rendered and not slow" $(TESTS)
 
 lint: $(INSTALLED)
 	$(BIN)/ruff check .
@@ -71,15 +72,19 @@ torture: $(INSTALLED)
 manual: $(INSTALLED)
 	$(BIN)/python -m penink_cli.manual
 
-bench: $(INSTALLED) needs needs-test
+bench: $(INSTALLED)
 	@for bench in $(BENCHES); do echo "== $$bench"; PATH="$(BIN):$$PATH" $(BIN)/python -m $$bench || exit 1; done
 
 dist: $(INSTALLED)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check build
 	$(BIN)/python -m build --outdir dist .
 
-check-dist: needs-python
+check-dist: needs
 	.ci/check-dist $(PYTHON)
+
+# `make` and `make test` in new roots of Debian 12 and 13 that hold nothing but python3, gcc, make and git: an hour, as root.
+check-roots:
+	.ci/check-roots $(ROOTS)
 
 clean:
 	rm -rf $(VENV) build dist *.egg-info .pytest_cache .hypothesis .mypy_cache .ruff_cache

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import os
+import shutil
+import signal
 import subprocess
 import sys
+import tempfile
 from collections.abc import Callable
 from pathlib import Path
 
@@ -24,6 +27,56 @@ Run = Callable[..., "subprocess.CompletedProcess[bytes]"]
 def environment(**changes: str) -> dict[str, str]:
     """The environment for a penink process that runs this checkout from any folder."""
     return {**os.environ, "PYTHONPATH": str(ROOT), **changes}
+
+
+def packages() -> dict[str, str]:
+    """Programs that tests may start, and the packages that bring them: .ci/packages."""
+    lines = [line.split() for line in (ROOT / ".ci/packages").read_text().splitlines() if not line.startswith("#")]
+    return {program: package for program, package, _ in lines}
+
+
+PACKAGES = packages() | {"sh": "dash"}
+RENDERERS = ("gs", "chromium", "pdfimages", "rsvg-convert")
+
+
+def _watch(event: str, arguments: tuple[object, ...]) -> None:
+    """Fail a test that starts a program which is missing, or which nobody installs."""
+    if event != "subprocess.Popen":
+        return
+    program = os.fsdecode(arguments[0] or arguments[1][0])  # type: ignore[index, arg-type]
+    name = os.path.basename(program)
+    if "python" in name or name == "penink" or program.startswith((str(ROOT), tempfile.gettempdir())):
+        return
+    listed = next((known for known in PACKAGES if known.startswith(name)), None)
+    assert listed, f"{name} is not in .ci/packages: nobody installs it for the tests"
+    assert shutil.which(program), f"{name} is missing: run 'apt-get install {PACKAGES[listed]}' as root"
+    test = os.environ.get("PYTEST_CURRENT_TEST", "").rsplit(" (", 1)[0]
+    if name.startswith(RENDERERS) and test in _quick:
+        _quick.discard(test)
+        pytest.fail(f"{test} starts {name}: mark it, or its module, with pytest.mark.rendered")
+
+
+_quick: set[str] = set()  # tests of the quick tier that are not marked `rendered`
+sys.addaudithook(_watch)
+
+
+def pytest_itemcollected(item: pytest.Item) -> None:
+    """Mark what draws with Ghostscript by a fixture; in the quick tier, remember what may not."""
+    if "ghostscript" in getattr(item, "fixturenames", ()):
+        item.add_marker(pytest.mark.rendered)
+    if "not rendered" in item.config.option.markexpr and not any(item.iter_markers("rendered")):
+        _quick.add(item.nodeid)
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _signals_as_from_a_terminal() -> None:
+    """What nohup and a script's background ignore is no longer ignored by the processes that tests start.
+
+    A handler that does nothing keeps this process alive as before; whatever it executes has the default again.
+    """
+    for number in (signal.SIGINT, signal.SIGHUP, signal.SIGTERM, signal.SIGQUIT):
+        if signal.getsignal(number) == signal.SIG_IGN:
+            signal.signal(number, lambda *_: None)
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

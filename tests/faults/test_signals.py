@@ -60,8 +60,11 @@ def test_stopped_while_it_waits_for_input(number, inputs, tmp_path):
             os.write(writing, bytes(1 << 16))
     assert select.select([], [writing], [], 60)[1]  # there is room again: it is reading
     process.send_signal(number)
-    _, err = process.communicate()
-    os.close(writing)
+    try:
+        _, err = process.communicate(timeout=60)
+    finally:
+        process.kill()
+        os.close(writing)
     assert (process.returncode, err) == (-number, b"") and os.listdir(tmp_path) == []
 
 
