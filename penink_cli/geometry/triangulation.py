@@ -1,7 +1,7 @@
 """The topology of an arrangement: its constrained Delaunay triangulation, the regions that edges enclose, walking.
 
-The only module that imports `triangle`. Triangles turn positively, (b − a) × (c − a) > 0, which with y down is
-clockwise on the page:
+`meshers` asks a library for the triangles; nothing that is written may depend on more than the regions they make up.
+Triangles turn positively, (b − a) × (c − a) > 0, which with y down is clockwise on the page:
 
         c            side k of a triangle runs from its corner k to its corner k + 1;
        / \\           neighbours[t, k] is the triangle beyond side k, −1 beyond the frame;
@@ -20,10 +20,9 @@ import numpy as np
 import numpy.typing as npt
 
 from penink_cli.geometry._compiled.sweep import orientation
+from penink_cli.geometry.meshers import mesh
 from penink_cli.ground.errors import ArrangementError
 from penink_cli.ground.model import EdgeList, Floats, Ints
-
-OWN = 2  # segment marker of the arrangement's edges; the library uses 0 and 1 for its own
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,8 +86,6 @@ class Triangulation:
 
 def triangulate(edges: EdgeList) -> Triangulation:
     """The constrained Delaunay triangulation of a valid arrangement within its frame."""
-    import triangle
-
     used = np.unique(edges.edges)
     place = np.full(len(edges.vertices), -1, np.int64)
     place[used] = np.arange(len(used))
@@ -99,19 +96,7 @@ def triangulate(edges: EdgeList) -> Triangulation:
     vertices = np.concatenate([vertices, corners])
     source = np.concatenate([used, np.full(len(corners), -1)]).astype(np.int64)
     segments = place[edges.edges]
-    # "p" obeys segments, "c" fills the convex hull, which is the frame. Without "c" nothing is left of open edges, and
-    # an empty array of segments is an error there.
-    if len(segments):
-        marks = np.full((len(segments), 1), OWN, np.int32)
-        result = triangle.triangulate(
-            {"vertices": vertices, "segments": segments.astype(np.int32), "segment_markers": marks}, "pc"
-        )
-    else:
-        result = triangle.triangulate({"vertices": vertices}, "c")
-    triangles = np.asarray(result["triangles"], np.int64)
-    if len(result["vertices"]) != len(vertices):
-        raise ArrangementError("edges cross: the arrangement must be valid before it is triangulated")
-    triangles = _turned(vertices, triangles)
+    triangles = _turned(vertices, mesh(vertices, segments))
     neighbours = _neighbours(triangles)
     fixed = _fixed(triangles, segments, len(vertices))
     return Triangulation(vertices, source, triangles, neighbours, fixed, _regions(neighbours, fixed))

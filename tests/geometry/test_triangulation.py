@@ -2,14 +2,26 @@
 
 from __future__ import annotations
 
+import importlib.util
+
 import numpy as np
 import pytest
 
+from penink_cli.geometry import meshers
+from penink_cli.geometry.regions import edges_around, region_mask
 from penink_cli.geometry.triangulation import triangulate
-from penink_cli.ground.errors import ArrangementError
+from penink_cli.ground.errors import ArrangementError, ParameterError
 from penink_cli.ground.model import EdgeList
 from tests.oracles.brute import turn
 from tests.reconstruction.arrangements import HOSTILE, edge_list, random_edges
+
+
+@pytest.fixture(autouse=True, params=["triangle", "pythoncdt"])
+def mesher(request, monkeypatch):
+    """Every test with both libraries."""
+    if request.param == "triangle" and importlib.util.find_spec("triangle") is None:
+        pytest.skip("triangle has no release for this machine or interpreter")
+    monkeypatch.setenv(meshers.VARIABLE, request.param)
 
 
 def validate(mesh, edges):
@@ -94,3 +106,44 @@ def test_crossing_edges_are_refused_here_too():
     crossing = EdgeList(9, 9, np.array([(1.0, 1), (8, 8), (1, 8), (8, 1)]), np.array([(0, 1), (2, 3)]))
     with pytest.raises(ArrangementError, match="cross"):
         triangulate(crossing)
+
+
+def test_edges_through_a_vertex_are_refused_here_too():
+    through = EdgeList(9, 9, np.array([(1.0, 1), (8, 8), (4, 4), (8, 1)]), np.array([(0, 1), (2, 3)]))
+    with pytest.raises(ArrangementError, match="cross"):
+        meshers.by_pythoncdt(np.concatenate([through.vertices, [(0, 0), (9, 0), (9, 9), (0, 9)]]), through.edges)
+
+
+@pytest.mark.parametrize("case", [*HOSTILE, *range(40)])
+def test_both_libraries_part_the_frame_into_the_same_regions(case, monkeypatch):
+    """Masks and outlines, which are what is written, do not depend on where diagonals lie."""
+    if importlib.util.find_spec("triangle") is None:
+        pytest.skip("triangle has no release for this machine or interpreter")
+    rng = np.random.default_rng(case if isinstance(case, int) else 0)
+    if isinstance(case, int):
+        edges = random_edges(rng, 9, 7, 40, lattice=2 if case % 4 == 3 else None)
+    else:
+        edges = HOSTILE[case]
+    points = rng.uniform(0.02, 0.98, (30, 2)) * (edges.width, edges.height)
+    found = []
+    for name in meshers.MESHERS:
+        monkeypatch.setenv(meshers.VARIABLE, name)
+        labels = triangulate(edges).regions_of(points)
+        same = labels[:, None] == labels[None, :]
+        some = points[:1]
+        found.append((same, region_mask(edges, some, 36, 28), edges_around(edges, some)))
+    for one, other in zip(*found):
+        assert np.array_equal(one, other)
+
+
+def test_a_library_that_is_not_there_is_named(monkeypatch):
+    monkeypatch.setenv(meshers.VARIABLE, "cgal")
+    with pytest.raises(ParameterError, match="PENINK_MESHER='cgal': known are triangle, pythoncdt"):
+        triangulate(HOSTILE["star"])
+    monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
+    monkeypatch.setenv(meshers.VARIABLE, "triangle")
+    with pytest.raises(ParameterError, match="not installed"):
+        triangulate(HOSTILE["star"])
+    monkeypatch.delenv(meshers.VARIABLE)
+    with pytest.raises(ParameterError, match="neither triangle nor pythoncdt is installed"):
+        triangulate(HOSTILE["star"])
