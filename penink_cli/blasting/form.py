@@ -19,12 +19,16 @@ from penink_cli.blasting.sheet import SIGMA_PT, Cells, Sheet, resample
 from penink_cli.ground.angles import direction
 from penink_cli.ground.model import Floats, HatchLayer, Ints
 
+#: Lengths of strokes, points: they look shorter where they bend, and many end sooner because their line does.
+STROKE_PT = (38.0, 82.0)
 #: Cells that lines are laid beyond the frame.
 PAD = 12
 #: Where a layer covers less than this, its lines run on as dense as they are around, at least so many a point: lines
 #: whose density falls to nothing would turn aside there.
 FAINT, SPARSEST = 0.08, 0.05
 AROUND_PT = 9.0
+#: A layer is active where it covers more than this: only there does it fill gaps.
+ACTIVE = 0.04
 #: Lines begin and end where the layer covers so much, a different tone for each: else their ends draw a contour.
 RAGGED = (0.004, 0.03)
 #: Short strokes: how long they are, how far apart the places tried, and the cosine of the most that they turn in a
@@ -38,10 +42,14 @@ BOW = 0.14
 
 @dataclass(frozen=True, eq=False)
 class Laid:
-    """What the lines of one layer were made of: lines a point at each node, and the phase there."""
+    """What the lines of one layer were made of: lines a point at each node, and the phase there.
+
+    active: (rows, columns) in which of the sheet's cells the layer covers anything worth speaking of.
+    """
 
     density: Plane
     phase: Plane
+    active: npt.NDArray[np.bool_]
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,6 +61,12 @@ class DrawnStrokes:
     joined: npt.NDArray[np.bool_]
     slack: Floats
     samples: Floats
+
+
+#: None.
+NO_STROKES = DrawnStrokes(
+    np.zeros((0, 2)), np.zeros(1, np.int64), np.zeros((0, 2), bool), np.zeros((0, 2)), np.zeros((0, 2))
+)
 
 
 class Form:
@@ -84,6 +98,9 @@ class Form:
     def swept(self, i: int, coverage: Floats, pen: float, finest: float, seed: int) -> candidates.Candidates:
         """The strokes of layer i that cover each cell (rows, columns) as coverage asks, in no order."""
         sheet, layer = self.sheet, self.layers[i]
+        self._laid.pop(i, None)
+        if not (coverage > 0).any():
+            return self._candidates(NO_STROKES, np.zeros(0), pen, np.zeros(0))
         cover: Plane = np.pad(coverage.astype(np.float32), PAD, mode="edge")
         nx, ny = self.normals(i)
         gained = np.float32(sheet.gain_pt) * (np.abs(nx) + np.abs(ny))
@@ -92,12 +109,12 @@ class Form:
             density = np.minimum(density, np.float32(1.0 / layer.spacing_pt))
         field = Field(self.nodes, nx, ny, density)
         phase = solve(field, self._walls, seed * 7 + 1, sheet.each)
-        self._laid[i] = Laid(density, phase)
-        lines = self._lines(field, phase, 0.0, seed)
+        self._laid[i] = Laid(density, phase, coverage > ACTIVE)
+        lines = self._lines(field, phase, 0.0, _grown(cover > RAGGED[0]), seed)
         thresholds = np.random.default_rng([seed, 8]).uniform(*RAGGED, len(lines.ring))
         seen = self._at_cells(cover, lines.points)
         lines, _ = pen_lines.live(lines, seen > np.repeat(thresholds, np.diff(lines.first)))
-        strokes = self._strokes(lines, density, sweep.STROKE_PT, pen, seed)
+        strokes = self._strokes(lines, density, STROKE_PT, pen, seed)
         cells = self._at_cells(cover, strokes.samples).reshape(-1, SAMPLES)
         total: Floats = cells[:, 0].astype(np.float64)
         for k in range(1, SAMPLES):
@@ -114,23 +131,30 @@ class Form:
         least: they must pass a place where so many times as much is due as the stroke itself adds,
         error: (rows, columns) and where this is positive.
         """
-        laid = self._laid[i]
-        lines = self._lines(Field(self.nodes, *self.normals(i), laid.density), laid.phase, 0.5, seed)
-        due = self._due(self.layers[i], lines.points, error)
+        sheet, laid = self.sheet, self._laid.get(i)
+        if laid is None:
+            return self._candidates(NO_STROKES, np.zeros(0), pen, np.zeros(0))
+        owed = sheet.residual > least * self._painted(pen) / (2.5066 * SIGMA_PT)
+        wanted = np.pad(laid.active & (error > 0) & owed, PAD)
+        field = Field(self.nodes, *self.normals(i), laid.density)
+        lines = self._lines(field, laid.phase, 0.5, _grown(wanted, round(length / 2 / self.nodes.dx)), seed)
+        due = self._due(i, lines.points, error)
         lines, _ = pen_lines.live(
             lines, self._near(lines, due > least * self._painted(pen) / (2.5066 * SIGMA_PT), length)
         )
         strokes = self._strokes(lines, laid.density, (0.7 * length, 1.3 * length), pen, seed)
-        due = self._due(self.layers[i], strokes.samples, error).reshape(-1, SAMPLES).max(axis=1)
+        due = self._due(i, strokes.samples, error).reshape(-1, SAMPLES).max(axis=1)
         return self._candidates(strokes, np.full(len(due), pen), pen, -due)
 
-    def _due(self, layer: HatchLayer, points: Floats, error: Cells) -> Floats:
-        """What is due at points (n, 2) where the layer is active and the error (rows, columns) positive."""
-        sheet = self.sheet
+    def _due(self, i: int, points: Floats, error: Cells) -> Floats:
+        """What is due at points (n, 2) where layer i is active and the error (rows, columns) positive."""
+        sheet, laid = self.sheet, self._laid.get(i)
+        if laid is None:
+            return np.zeros(len(points))
         at = np.floor(points * (sheet.columns / sheet.width, sheet.rows / sheet.height)).astype(np.int64)
         inside = (at >= 0).all(axis=1) & (at[:, 0] < sheet.columns) & (at[:, 1] < sheet.rows)
         x, y = np.clip(at, 0, [sheet.columns - 1, sheet.rows - 1]).T
-        active = inside & (sheet.tone[y, x] > layer.low) & (error[y, x] > 0)
+        active = inside & laid.active[y, x] & (error[y, x] > 0)
         return np.where(active, sheet.residual[y, x], 0.0)
 
     def _near(self, lines: Lines, wanted: npt.NDArray[np.bool_], length: float) -> npt.NDArray[np.bool_]:
@@ -151,7 +175,7 @@ class Form:
         )
         middle = np.column_stack([x.ravel(), y.ravel()])
         middle = middle + rng.uniform(-0.25, 0.25, middle.shape) * FILLER_STEP_PT
-        due = self._due(self.layers[i], middle, error)
+        due = self._due(i, middle, error)
         middle, due = middle[due > 0], due[due > 0]
         half = rng.uniform(*FILLER_PT, len(middle)) / 2
         planes = self.turned(i)
@@ -185,9 +209,10 @@ class Form:
         nx, ny = _normal(planes[0][y, x], planes[1][y, x])
         return np.column_stack([ny, -nx]).astype(np.float64)
 
-    def _lines(self, field: Field, phase: Plane, level: float, seed: int) -> Lines:
-        """Level lines without the corners of the grid, in equal steps."""
-        lines = pen_lines.evened(level_lines(field, phase, level, self.sheet.each), sweep.SHORTEST_PT)
+    def _lines(self, field: Field, phase: Plane, level: float, wanted: npt.NDArray[np.bool_], seed: int) -> Lines:
+        """Level lines where they are wanted (rows, columns of the nodes), smooth and in equal steps."""
+        found = level_lines(field, phase, level, self.sheet.each, wanted)
+        lines = pen_lines.evened(found, sweep.SHORTEST_PT)
         spacing = 1.0 / self._at_cells(field.density, lines.points).astype(np.float64)
         return pen_lines.turned_rings(pen_lines.smoothed(lines, spacing), seed)
 
@@ -244,6 +269,14 @@ def turn_of(layers: tuple[HatchLayer, ...], i: int) -> float:
     """Degrees of layer i from the field: what the layer says, else what it has from the first one."""
     own = layers[i].turn
     return layers[i].angle - layers[0].angle if own is None else own
+
+
+def _grown(mask: npt.NDArray[np.bool_], by: int = 3) -> npt.NDArray[np.bool_]:
+    """What lies within so many cells, each way, of what is set."""
+    for _ in range(2):
+        total = np.cumsum(np.pad(mask, ((by + 1, by), (0, 0))), axis=0, dtype=np.int32)
+        mask = (total[2 * by + 1 :] > total[: -2 * by - 1]).T
+    return np.ascontiguousarray(mask)
 
 
 def _normal(cos2: Plane, sin2: Plane) -> tuple[Plane, Plane]:

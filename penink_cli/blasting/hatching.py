@@ -19,7 +19,7 @@ import numpy.typing as npt
 
 from penink_cli.blasting import candidates, curves, thin, walls
 from penink_cli.blasting.form import Form
-from penink_cli.blasting.shares import shares
+from penink_cli.blasting.shares import ALONE, shares
 from penink_cli.blasting.sheet import Cells, Sheet
 from penink_cli.ground.device import MEAN
 from penink_cli.ground.model import EdgeList, HatchLayer, Strokes
@@ -37,6 +37,10 @@ SWEEPS, ROUNDS = 2, 3
 SWEEP_GAIN = 0.4
 #: Along a field no more of an error than this is fed back at a time: lines that must end there cannot make it up.
 MOST_FED_BACK = np.float32(0.15)
+#: Along a field a layer that crosses another begins only where as much of the surroundings is dark, seen so many times
+#: over by the eye, or a place is so much darker than where it begins: small dark things are told better by the lines
+#: that run along them, closing up, than by a patch of crossed ones with a ragged border.
+WIDER, BY_ITSELF = 2, 0.25
 #: Fine strokes: their width in parts of the pen's, and in dots of the device at the least; their length in points.
 FINE, FINE_DOTS, FINE_PT = 0.5, 1.5, 44.0
 #: They must pass a place where so many times as much is due as they add themselves, and count their own ink so many
@@ -48,7 +52,7 @@ FINE_SEEN = 0.015
 FINE_COST, FINE_SHORTEST_PT = 0.02, 20.5
 #: Along a field short strokes fill what is too light by this, and must gain so much; they count their own ink so many
 #: times and are no shorter than this.
-FILLER_SEEN, FILLER_COST, FILLER_CAUTION, FILLER_SHORTEST_PT = 0.06, 0.05, 1.3, 4.0
+FILLER_SEEN, FILLER_COST, FILLER_CAUTION, FILLER_SHORTEST_PT = 0.15, 0.05, 1.3, 4.0
 #: Along the frame strokes are drawn where it is darker, and count their own ink so many times.
 RIM_TONE, RIM_CAUTION = 0.85, 4.0
 #: Rows of fine strokes that are tried, and the moves sideways, in rows, that look for the middle of a gap.
@@ -94,14 +98,16 @@ def hatch_sheet(
         if turn < SWEEPS:
             smooth = ((sheet.low_pass(density) if turn else wide) / sheet.weight - there) / (1 - there)
             smooth = np.clip(smooth, 0.0, 0.995).astype(np.float64)
-            around = sheet.spread(sheet.seen(density)).astype(np.float64)
+            around = sheet.spread(sheet.seen(density))
+            if form:
+                for _ in range(WIDER):
+                    around = sheet.spread(sheet.seen(around))
+            covers = shares(smooth, around.astype(np.float64), layers, BY_ITSELF if form else ALONE)
             laid = [
                 form.swept(i, cover, pen, fine, seed * 64 + i)
                 if form
                 else candidates.swept(sheet, cover, layer, pen, fine, gain_pt, borders, seed * 64 + i)
-                for i, (layer, pen, fine, cover) in enumerate(
-                    zip(layers, pens, finest, shares(smooth, around, layers))
-                )
+                for i, (layer, pen, fine, cover) in enumerate(zip(layers, pens, finest, covers))
             ]
         sheet.clear()
         if turn:

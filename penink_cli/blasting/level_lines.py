@@ -14,9 +14,11 @@ import numpy.typing as npt
 
 from penink_cli.blasting import curves
 from penink_cli.blasting._compiled import levels as _levels
-from penink_cli.blasting.phase import BAND, Each, Field, Plane, one_by_one
+from penink_cli.blasting.phase import Each, Field, Plane, one_by_one
 from penink_cli.ground.model import Floats, Ints
 
+#: Nodes to a band, and rows at the least.
+BAND_NODES, BAND_ROWS = 1 << 19, 32
 #: Crossings of one link that are told from each other in two bands that share it.
 PER_LINK = 16
 
@@ -30,31 +32,41 @@ class Lines:
     ring: npt.NDArray[np.bool_]
 
 
-def level_lines(field: Field, phase: Plane, level: float = 0.0, each: Each = one_by_one) -> Lines:
+def level_lines(
+    field: Field,
+    phase: Plane,
+    level: float = 0.0,
+    each: Each = one_by_one,
+    wanted: npt.NDArray[np.bool_] | None = None,
+) -> Lines:
     """Where the phase (rows, columns; see `phase.solve`) is `level` but for whole turns: 0, or 1/2 for lines between.
 
-    Lines end at singularities and at the border of the grid.
+    Lines end at singularities, at the border of the grid, and beyond nodes where they are wanted (rows, columns).
     """
     rows = field.nodes.rows
-    cuts = list(range(0, rows - 1, BAND))
+    band_rows = max(BAND_ROWS, BAND_NODES // field.nodes.columns)
+    cuts = list(range(0, rows - 1, band_rows))
+    there = np.ones((rows, field.nodes.columns), np.uint8) if wanted is None else wanted.astype(np.uint8)
     found: dict[int, tuple[Floats, Ints, Ints]] = {}
 
     def band(low: int) -> None:
-        found[low] = _band_lines(field, phase, level, low, min(low + BAND, rows - 1))
+        found[low] = _band_lines(field, phase, level, there, low, min(low + band_rows, rows - 1))
 
     each(band, cuts)
     parts = [found.pop(low) for low in cuts]
     return _joined(parts, field.nodes.columns)
 
 
-def _band_lines(field: Field, phase: Plane, level: float, low: int, high: int) -> tuple[Floats, Ints, Ints]:
+def _band_lines(
+    field: Field, phase: Plane, level: float, wanted: npt.NDArray[np.uint8], low: int, high: int
+) -> tuple[Floats, Ints, Ints]:
     """Points, first and ends (see the kernel) of the lines between two rows of nodes."""
     nodes = field.nodes
     shape = high - low + 1, nodes.columns, 3
     change, sign = np.empty(shape, np.float32), np.empty(shape, np.int8)
     begin = np.empty(change.size + 1, np.int32)
     total = _levels.crossings(
-        phase, field.nx, field.ny, field.density, nodes.dx, nodes.dy, level, low, high, change, sign, begin
+        phase, field.nx, field.ny, field.density, wanted, nodes.dx, nodes.dy, level, low, high, change, sign, begin
     )
     place, border, beside = np.empty((total, 2)), np.empty(total, np.int32), np.empty((total, 2), np.int32)
     _levels.places(phase, level, low, change, begin, nodes.left, nodes.top, nodes.dx, nodes.dy, place, border)

@@ -49,11 +49,10 @@ def evened(lines: Lines, shortest_pt: float) -> Lines:
     """The lines that are not shorter than that, in equal steps of about `STEP_PT`."""
     length = lengths(lines)
     keep = np.flatnonzero(length >= max(shortest_pt, 1e-6))
-    kept = curves.take(curves.Polylines(lines.points, lines.first), keep, np.zeros((len(keep), 2)))
     steps = np.maximum(1, np.floor(length[keep] / STEP_PT + 0.5)).astype(np.int64)
     begin = curves.starts(steps + 1)
     out = np.empty((begin[-1], 2))
-    _lines.even(kept.points, kept.first, length[keep], begin, out)
+    _lines.even(lines.points, lines.first, length, keep, begin, out)
     return Lines(out, begin, lines.ring[keep])
 
 

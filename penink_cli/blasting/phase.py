@@ -31,8 +31,8 @@ Each: TypeAlias = Callable[[Callable[[int], None], Iterable[int]], None]
 
 #: Sweeps over each of the coarser grids, and over the finest.
 COARSE_SWEEPS, SWEEPS = 14, 12
-#: Rows to a band.
-BAND = 256
+#: Rows to a band, and how many nodes a grid may have to keep its finest links: they are most of the memory.
+BAND, KEPT = 256, 1 << 20
 #: What a link weighs that an edge crosses; one between normals at right angles; how much more one along the lines.
 LEAK, LEAST, ALONG = 0.05, 0.15, 2.0
 
@@ -79,10 +79,15 @@ def solve(field: Field, walls: Floats | None, seed: int, each: Each = one_by_one
         at = (walls - np.array([nodes.left, nodes.top] * 2)) / np.array([nodes.dx, nodes.dy] * 2)
         _phase.weaken(np.ascontiguousarray(at), weak)
 
-    def links(low: int, high: int) -> Plane:
+    def made(low: int, high: int) -> Plane:
         out = np.empty((high - low, nodes.columns, 6), np.float32)
         _phase.links(field.nx, field.ny, field.density, weak, nodes.dx, nodes.dy, LEAK, LEAST, ALONG, low, out)
         return out
+
+    kept = made(0, nodes.rows) if nodes.rows * nodes.columns <= KEPT else None
+
+    def links(low: int, high: int) -> Plane:
+        return made(low, high) if kept is None else kept[low:high]
 
     # coarser and coarser links; the finest are made anew for each band when it is their turn
     levels: list[Plane] = []

@@ -21,11 +21,11 @@ CLOSES_UP = 3
 ALONE = 0.1
 
 
-def shares(tone: Floats, around: Floats, layers: tuple[HatchLayer, ...]) -> list[Floats]:
+def shares(tone: Floats, around: Floats, layers: tuple[HatchLayer, ...], alone: float = ALONE) -> list[Floats]:
     """How much each layer is to cover (same shape as tone), so that crossing at random they make the tone.
 
     around: (same shape) the mean tone of the surroundings; a layer is not begun for a spot that has room for a stroke
-    or two of it.
+    or two of it, unless that is darker than where the layer begins by more than `alone`.
 
     A last layer whose `high` is 1 is black: where it begins the first layer goes on alone, and covers all there is.
 
@@ -35,7 +35,7 @@ def shares(tone: Floats, around: Floats, layers: tuple[HatchLayer, ...]) -> list
     if len(layers) > 1 and layers[-1].high >= 1.0:
         begin = layers[-1].low
         black = (tone > begin) & ((around > begin) | (tone > begin + BLACKER))
-        first, *others = shares(tone, around, layers[:-1])
+        first, *others = shares(tone, around, layers[:-1], alone)
         part = box_mean(black.astype(np.float64), CLOSES_UP)
         others = [np.where(part < 0.999, cover, 0.0) for cover in others]
         return [first + (BLACK - first) * part, *others, np.zeros_like(tone)]
@@ -48,7 +48,7 @@ def shares(tone: Floats, around: Floats, layers: tuple[HatchLayer, ...]) -> list
         after = np.zeros_like(here)
         if i + 1 < len(layers):
             onset = layers[i + 1].low
-            after = here & (tone > onset) & ((around > onset) | (tone > onset + ALONE))
+            after = here & (tone > onset) & ((around > onset) | (tone > onset + alone))
             t = np.clip((tone - onset) / BACK_AFTER, 0.0, 1.0)
             less = GIVES_WAY * (layer.high - before) * (1.0 - t * t * (3.0 - 2.0 * t))
             reached = np.where(after, layer.high - less, tone)

@@ -51,7 +51,8 @@ def test_bands_change_nothing(turn, monkeypatch) -> None:
     legs = sorted_segments(level_lines.level_lines(f, whole))
     for band in (38, 64):
         monkeypatch.setattr(phase, "BAND", band)
-        monkeypatch.setattr(level_lines, "BAND", band)
+        monkeypatch.setattr(phase, "KEPT", 0)
+        monkeypatch.setattr(level_lines, "BAND_NODES", band * f.nodes.columns)
         assert np.array_equal(phase.solve(f, None, 3), whole)
         banded = level_lines.level_lines(f, whole)
         assert np.array_equal(sorted_segments(banded), legs)
@@ -62,7 +63,7 @@ def test_bands_change_nothing(turn, monkeypatch) -> None:
 def test_threads_change_nothing(monkeypatch) -> None:
     f = field(waves)
     monkeypatch.setattr(phase, "BAND", 48)
-    monkeypatch.setattr(level_lines, "BAND", 48)
+    monkeypatch.setattr(level_lines, "BAND_NODES", 48 * f.nodes.columns)
     used = set()
 
     def each(work, items) -> None:

@@ -30,12 +30,12 @@ cdef inline float _near(float x) noexcept nogil:
 
 def crossings(
     const float[:, ::1] phase, const float[:, ::1] nx, const float[:, ::1] ny, const float[:, ::1] density,
-    float dx, float dy, float level, Py_ssize_t low, Py_ssize_t high,
+    const unsigned char[:, ::1] wanted, float dx, float dy, float level, Py_ssize_t low, Py_ssize_t high,
     float[:, :, ::1] change, signed char[:, :, ::1] sign, int[::1] begin,
 ):
     """Changes of phase along the links of node rows low … high, and how many level lines cross each.
 
-    Of the last row only links to the right are looked at: it is the next band's first one.
+    wanted: a link between two nodes that are not is none. Of the last row only links to the right are looked at: it is the next band's first one.
     change, sign: (high - low + 1, columns, 3); sign is nought where there is no link. begin: where the crossings of
     each link start, one more than there are links. Returns the number of all.
     """
@@ -55,7 +55,7 @@ def crossings(
                     change[r, i, k] = 0.0
                     q = j + (k > 0)
                     p = i + (k != 1)
-                    if p >= columns or q > high:
+                    if p >= columns or q > high or not (wanted[j, i] or wanted[q, p]):
                         continue
                     s = <float>-1.0 if nx[j, i] * nx[q, p] + ny[j, i] * ny[q, p] < 0.0 else <float>1.0
                     predicted = <float>0.0

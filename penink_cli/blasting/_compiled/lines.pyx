@@ -39,15 +39,16 @@ def lengths(const double[:, ::1] points, const long long[::1] first, double[::1]
 
 
 def even(
-    const double[:, ::1] points, const long long[::1] first, const double[::1] length, const long long[::1] begin,
-    double[:, ::1] out,
+    const double[:, ::1] points, const long long[::1] first, const double[::1] length, const long long[::1] which,
+    const long long[::1] begin, double[:, ::1] out,
 ):
-    """Polylines anew in equal steps: of line i begin[i + 1] - begin[i] points, its ends among them."""
-    cdef Py_ssize_t i, p, k, n
+    """Some of the lines anew in equal steps, which[k] from begin[k] on in out, its ends among its points."""
+    cdef Py_ssize_t i, j, p, k, n
     cdef double x, y, step, run, leg, f, due
     with nogil:
-        for i in range(first.shape[0] - 1):
-            n = begin[i + 1] - begin[i] - 1
+        for j in range(which.shape[0]):
+            i = which[j]
+            n = begin[j + 1] - begin[j] - 1
             step = length[i] / n
             p = first[i]
             run = 0.0
@@ -64,10 +65,10 @@ def even(
                     leg = sqrt(x * x + y * y)
                 f = (due - run) / leg if leg > 1e-12 else 0.0
                 f = 1.0 if f > 1.0 else f
-                out[begin[i] + k, 0] = points[p, 0] + f * x
-                out[begin[i] + k, 1] = points[p, 1] + f * y
-            out[begin[i + 1] - 1, 0] = points[first[i + 1] - 1, 0]
-            out[begin[i + 1] - 1, 1] = points[first[i + 1] - 1, 1]
+                out[begin[j] + k, 0] = points[p, 0] + f * x
+                out[begin[j] + k, 1] = points[p, 1] + f * y
+            out[begin[j + 1] - 1, 0] = points[first[i + 1] - 1, 0]
+            out[begin[j + 1] - 1, 1] = points[first[i + 1] - 1, 1]
 
 
 def smooth(double[:, ::1] points, const long long[::1] first, const unsigned char[::1] rounds, const unsigned char[::1] ring):
