@@ -112,10 +112,10 @@ class Form:
         self._laid[i] = Laid(density, phase, coverage > ACTIVE)
         lines = self._lines(field, phase, 0.0, _grown(cover > RAGGED[0]), seed)
         thresholds = np.random.default_rng([seed, 8]).uniform(*RAGGED, len(lines.ring))
-        seen = self._at_cells(cover, lines.points)
+        seen = self._at(cover, lines.points)
         lines, _ = pen_lines.live(lines, seen > np.repeat(thresholds, np.diff(lines.first)))
         strokes = self._strokes(lines, density, STROKE_PT, pen, seed)
-        cells = self._at_cells(cover, strokes.samples).reshape(-1, SAMPLES)
+        cells = self._at(cover, strokes.samples).reshape(-1, SAMPLES)
         total: Floats = cells[:, 0].astype(np.float64)
         for k in range(1, SAMPLES):
             total = total + cells[:, k]
@@ -146,7 +146,7 @@ class Form:
         due = self._due(i, strokes.samples, error).reshape(-1, SAMPLES).max(axis=1)
         return self._candidates(strokes, np.full(len(due), pen), pen, -due)
 
-    def _due(self, i: int, points: Floats, error: Cells) -> Floats:
+    def _due(self, i: int, points: npt.NDArray[np.floating], error: Cells) -> Floats:
         """What is due at points (n, 2) where layer i is active and the error (rows, columns) positive."""
         sheet, laid = self.sheet, self._laid.get(i)
         if laid is None:
@@ -213,7 +213,7 @@ class Form:
         """Level lines where they are wanted (rows, columns of the nodes), smooth and in equal steps."""
         found = level_lines(field, phase, level, self.sheet.each, wanted)
         lines = pen_lines.evened(found, sweep.SHORTEST_PT)
-        spacing = 1.0 / self._at_cells(field.density, lines.points).astype(np.float64)
+        spacing = 1 / self._at(field.density, lines.points)
         return pen_lines.turned_rings(pen_lines.smoothed(lines, spacing), seed)
 
     def _strokes(
@@ -221,7 +221,7 @@ class Form:
     ) -> DrawnStrokes:
         """Lines cut into strokes as a hand draws them."""
         middle = lines.points[(lines.first[:-1] + lines.first[1:]) // 2]
-        spacing = 1.0 / self._at_cells(density, middle).astype(np.float64)
+        spacing = 1.0 / self._at(density, middle).astype(np.float64)
         parts = pen_lines.cut(lines, spacing, stroke_pt, sweep.SHORTEST_PT, seed)
         n = len(parts.line)
         length = pen_lines.lengths(lines)[parts.line]
@@ -230,7 +230,7 @@ class Form:
         at = parts.span[:, :1] + (parts.span[:, 1:] - parts.span[:, :1]) * t
         at = np.clip(np.floor(at / length[:, None] * steps[:, None] + 0.5), 0, steps[:, None]).astype(np.int64)
         samples = lines.points[(lines.first[parts.line][:, None] + at).ravel()]
-        apart = np.minimum(1.0 / self._at_cells(density, samples[SAMPLES // 2 :: SAMPLES]).astype(np.float64), 40.0)
+        apart = np.minimum(1.0 / self._at(density, samples[SAMPLES // 2 :: SAMPLES]).astype(np.float64), 40.0)
         # the hand's variation, and a small gap where one stroke follows another
         rng = np.random.default_rng([seed, 2])
         drawn = parts.span[:, 1] - parts.span[:, 0]
@@ -256,13 +256,9 @@ class Form:
         """How wide a device paints a stroke of the pen, whatever its direction."""
         return pen + 1.27 * self.sheet.gain_pt
 
-    def _at_cells(self, values: Plane, points: Floats) -> Plane:
-        """Values (rows, columns of the nodes) at the nodes nearest to points (n, 2)."""
-        nodes = self.nodes
-        at = np.floor((points - (nodes.left, nodes.top)) / (nodes.dx, nodes.dy) + 0.5).astype(np.int64)
-        at = np.clip(at, 0, (nodes.columns - 1, nodes.rows - 1))
-        found: Plane = values[at[:, 1], at[:, 0]]
-        return found
+    def _at(self, values: Plane, points: npt.NDArray[np.floating]) -> Plane:
+        """Values (rows, columns of the nodes) at points (n, 2)."""
+        return pen_lines.look_up(values, self.nodes, points)
 
 
 def turn_of(layers: tuple[HatchLayer, ...], i: int) -> float:

@@ -102,6 +102,7 @@ def hatch_sheet(
             if form:
                 for _ in range(WIDER):
                     around = sheet.spread(sheet.seen(around))
+            laid = []  # those of the round before are no longer needed
             covers = shares(smooth, around.astype(np.float64), layers, BY_ITSELF if form else ALONE)
             laid = [
                 form.swept(i, cover, pen, fine, seed * 64 + i)

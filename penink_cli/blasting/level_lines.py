@@ -15,7 +15,7 @@ import numpy.typing as npt
 from penink_cli.blasting import curves
 from penink_cli.blasting._compiled import levels as _levels
 from penink_cli.blasting.phase import Each, Field, Plane, one_by_one
-from penink_cli.ground.model import Floats, Ints
+from penink_cli.ground.model import Ints
 
 #: Nodes to a band, and rows at the least.
 BAND_NODES, BAND_ROWS = 1 << 19, 32
@@ -25,9 +25,12 @@ PER_LINK = 16
 
 @dataclass(frozen=True, eq=False)
 class Lines:
-    """Polylines, as in `curves.Polylines`; those that end where they began are rings (n,)."""
+    """Polylines, as in `curves.Polylines`; those that end where they began are rings (n,).
 
-    points: Floats
+    points: (p, 2), in single precision as they are found.
+    """
+
+    points: npt.NDArray[np.floating]
     first: Ints
     ring: npt.NDArray[np.bool_]
 
@@ -47,7 +50,7 @@ def level_lines(
     band_rows = max(BAND_ROWS, BAND_NODES // field.nodes.columns)
     cuts = list(range(0, rows - 1, band_rows))
     there = np.ones((rows, field.nodes.columns), np.uint8) if wanted is None else wanted.astype(np.uint8)
-    found: dict[int, tuple[Floats, Ints, Ints]] = {}
+    found: dict[int, tuple[Plane, Ints, Ints]] = {}
 
     def band(low: int) -> None:
         found[low] = _band_lines(field, phase, level, there, low, min(low + band_rows, rows - 1))
@@ -59,7 +62,7 @@ def level_lines(
 
 def _band_lines(
     field: Field, phase: Plane, level: float, wanted: npt.NDArray[np.uint8], low: int, high: int
-) -> tuple[Floats, Ints, Ints]:
+) -> tuple[Plane, Ints, Ints]:
     """Points, first and ends (see the kernel) of the lines between two rows of nodes."""
     nodes = field.nodes
     shape = high - low + 1, nodes.columns, 3
@@ -68,26 +71,27 @@ def _band_lines(
     total = _levels.crossings(
         phase, field.nx, field.ny, field.density, wanted, nodes.dx, nodes.dy, level, low, high, change, sign, begin
     )
-    place, border, beside = np.empty((total, 2)), np.empty(total, np.int32), np.empty((total, 2), np.int32)
+    place, border, beside = np.empty((total, 2), np.float32), np.empty(total, np.int32), np.empty((total, 2), np.int32)
     _levels.places(phase, level, low, change, begin, nodes.left, nodes.top, nodes.dx, nodes.dy, place, border)
     _levels.pairs(phase, level, low, change, sign, begin, beside)
     del change, sign, begin
-    points = np.empty((total + total // 4 + 1, 2))
+    points = np.empty((total + total // 4 + 1, 2), np.float32)
     first, ends = np.empty(total // 2 + 2, np.int32), np.empty((total // 2 + 1, 2), np.int32)
     n = _levels.follow(beside, place, border, points, first, ends)
     return points[: first[n]].copy(), first[: n + 1].astype(np.int64), ends[:n].astype(np.int64)
 
 
-def _joined(parts: list[tuple[Floats, Ints, Ints]], columns: int) -> Lines:
+def _joined(parts: list[tuple[Plane, Ints, Ints]], columns: int) -> Lines:
     """The lines of all bands, those that end on the row between two bands made one."""
     counts = np.array([len(first) - 1 for _, first, _ in parts])
     size = np.concatenate([np.diff(first) for _, first, _ in parts])
     points = np.concatenate([points for points, _, _ in parts])
     first = curves.starts(size)
     ends = np.concatenate([ends for _, _, ends in parts])
+    parts.clear()
     ring = ends[:, 0] == -2
     # the last row of a band is the first one of the next: number rows through
-    band = np.repeat(np.arange(len(parts)), counts)
+    band = np.repeat(np.arange(len(counts)), counts)
     key = np.where(ends >= 0, ends + band[:, None] * (PER_LINK * columns), -1).ravel()
     order = np.argsort(key, kind="stable")
     order = order[key[order] >= 0]
@@ -97,26 +101,20 @@ def _joined(parts: list[tuple[Floats, Ints, Ints]], columns: int) -> Lines:
     partner = np.full(len(key), -1)
     partner[order[same]], partner[order[same + 1]] = order[same + 1], order[same]
     chains = _chains(partner.tolist())
-    # lines that are joined come after all others; a point on the row between two bands is in both
+    # lines that are joined come after all others; a point on the row between two bands is in both, and taken once
     whole = np.flatnonzero((partner.reshape(-1, 2) < 0).all(axis=1))
-    pieces: list[Ints] = []
-    sizes: list[int] = []
-    closed: list[bool] = []
-    for chain, is_ring in chains:
-        begin = len(pieces)
-        for k, end in enumerate(chain):
-            i = end >> 1
-            at = np.arange(first[i], first[i + 1])
-            at = at[::-1] if end & 1 else at
-            pieces.append(at[1:] if k else at)
-        sizes.append(sum(len(piece) for piece in pieces[begin:]))
-        closed.append(is_ring)
-    kept = np.repeat(first[whole], size[whole]) + curves.ramp(size[whole])
-    take = np.concatenate([kept, *pieces])
-    return Lines(
-        points[take], curves.starts(np.concatenate([size[whole], np.array(sizes, np.int64)])),
-        np.concatenate([ring[whole], np.array(closed, bool)]),
-    )  # fmt: skip
+    links = np.array([end for chain, _ in chains for end in chain], np.int64)
+    later = np.array([k > 0 for chain, _ in chains for k in range(len(chain))], np.int64)
+    line, back = links >> 1, links & 1
+    begin = np.where(back, first[line + 1] - 1 - later, first[line] + later)
+    count = np.concatenate([size[whole], size[line] - later])
+    out = np.empty((int(count.sum()), 2), np.float32)
+    step = np.concatenate([np.ones(len(whole), np.int64), 1 - 2 * back])
+    _levels.gather(points, np.concatenate([first[whole], begin]), count, step, out)
+    chain_first = curves.starts(np.array([len(chain) for chain, _ in chains]))[:-1]
+    sizes = np.concatenate([size[whole], np.add.reduceat(size[line] - later, chain_first)])
+    closed = np.array([is_ring for _, is_ring in chains], bool)
+    return Lines(out, curves.starts(sizes), np.concatenate([ring[whole], closed]))
 
 
 def _chains(partner: list[int]) -> list[tuple[list[int], bool]]:

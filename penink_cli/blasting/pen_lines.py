@@ -13,6 +13,7 @@ import numpy.typing as npt
 from penink_cli.blasting import curves
 from penink_cli.blasting._compiled import lines as _lines
 from penink_cli.blasting.level_lines import Lines
+from penink_cli.blasting.phase import Nodes, Plane
 from penink_cli.ground.model import Floats, Ints
 
 #: Distance of a line's points, points on paper.
@@ -56,7 +57,14 @@ def evened(lines: Lines, shortest_pt: float) -> Lines:
     return Lines(out, begin, lines.ring[keep])
 
 
-def smoothed(lines: Lines, spacing: Floats) -> Lines:
+def look_up(values: Plane, nodes: Nodes, points: npt.NDArray[np.floating]) -> Plane:
+    """Values (rows, columns of the nodes) at the nodes nearest to points (n, 2)."""
+    out = np.empty(len(points), np.float32)
+    _lines.look_up(values, np.ascontiguousarray(points, np.float64), nodes.left, nodes.top, nodes.dx, nodes.dy, out)
+    return out
+
+
+def smoothed(lines: Lines, spacing: npt.NDArray[np.floating]) -> Lines:
     """Lines without the corners that the grid gives them, evened out the more the further (p,) they are apart."""
     rounds = np.clip(SMOOTHING * spacing * spacing, FEWEST_ROUNDS, MOST_ROUNDS).astype(np.uint8)
     points = lines.points.copy()

@@ -41,7 +41,7 @@ def sorted_segments(lines: level_lines.Lines) -> np.ndarray:
     a, b = lines.points[:-1][~last[:-1]], lines.points[1:][~last[:-1]]
     swap = (a[:, 0] > b[:, 0]) | ((a[:, 0] == b[:, 0]) & (a[:, 1] > b[:, 1]))
     legs = np.where(swap[:, None], np.concatenate([b, a], 1), np.concatenate([a, b], 1))
-    return legs[np.lexsort(legs.T)]
+    return np.round(legs[np.lexsort(legs.T)], 4)
 
 
 @pytest.mark.parametrize("turn", [circles, waves])
@@ -171,8 +171,9 @@ def test_runs_that_are_wanted() -> None:
 
 
 def test_nothing_is_made_of_nothing() -> None:
-    none = level_lines.Lines(np.zeros((0, 2)), np.zeros(1, np.int64), np.zeros(0, bool))
+    none = level_lines.Lines(np.zeros((0, 2), np.float32), np.zeros(1, np.int64), np.zeros(0, bool))
     assert len(pen_lines.evened(none, 7.0).ring) == 0
+    none = pen_lines.evened(none, 7.0)
     parts = pen_lines.cut(none, np.zeros(0), (34.0, 72.0), 7.0, 1)
     points, first = pen_lines.drawn(none, parts, np.zeros((0, 3)))
     assert len(points) == 0 and first.tolist() == [0]

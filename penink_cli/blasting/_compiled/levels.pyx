@@ -80,12 +80,12 @@ cdef inline float _first(float a, float b) noexcept nogil:
 
 def places(
     const float[:, ::1] phase, float level, Py_ssize_t low, const float[:, :, ::1] change, const int[::1] begin,
-    double left, double top, double dx, double dy, double[:, ::1] place, int[::1] border,
+    double left, double top, double dx, double dy, float[:, ::1] place, int[::1] border,
 ):
     """Where the crossings are (n, 2), node (column i, row j) being at (left + i dx, top + j dy).
 
     border: (n,) the number of each that is on the first row of the band, in that row, `PER_LINK` to a link; more by
-    `PER_LINK` × columns on the last row; -1 for all others.
+    `PER_LINK` × columns on the last row; -2 for one on a diagonal link, -1 for all others.
     """
     cdef Py_ssize_t rows = change.shape[0]
     cdef Py_ssize_t columns = change.shape[1]
@@ -103,9 +103,9 @@ def places(
                     for x in range(begin[link], begin[link + 1]):
                         m = x - begin[link]
                         t = (whole + <float>m - a) / change[r, i, k]
-                        place[x, 0] = left + dx * (i + (t if k != 1 else <float>0.0))
-                        place[x, 1] = top + dy * (low + r + (t if k > 0 else <float>0.0))
-                        border[x] = -1
+                        place[x, 0] = <float>(left + dx * (i + (t if k != 1 else <float>0.0)))
+                        place[x, 1] = <float>(top + dy * (low + r + (t if k > 0 else <float>0.0)))
+                        border[x] = -2 if k == 2 else -1
                         if k == 0 and m < PER_LINK and (r == 0 or r == rows - 1):
                             border[x] = <int>(PER_LINK * (i if r == 0 else columns + i) + m)
 
@@ -179,11 +179,12 @@ def pairs(
 
 
 def follow(
-    int[:, ::1] beside, const double[:, ::1] place, const int[::1] border,
-    double[:, ::1] points, int[::1] first, int[:, ::1] ends,
+    int[:, ::1] beside, const float[:, ::1] place, const int[::1] border,
+    float[:, ::1] points, int[::1] first, int[:, ::1] ends,
 ):
     """Lines of crossings that are beside each other; returns how many. beside is used up.
 
+    Crossings of diagonal links only lead on, for there are enough others, unless a line ends at one.
     points: (p, 2) of all lines, a ring's last one being its first. first: where each line starts in it.
     ends: (lines, 2) what border says of a line's ends, -2 for both of a ring.
     """
@@ -200,10 +201,11 @@ def follow(
                 x = start
                 before = -1
                 while True:
-                    points[n, 0] = place[x, 0]
-                    points[n, 1] = place[x, 1]
-                    n += 1
                     after = beside[x, 0] if beside[x, 0] != before else beside[x, 1]
+                    if border[x] != -2 or (turn == 0 and (after < 0 or before < 0)):
+                        points[n, 0] = place[x, 0]
+                        points[n, 1] = place[x, 1]
+                        n += 1
                     beside[x, 0] = -1
                     beside[x, 1] = -1
                     if after < 0 or after == start:
@@ -217,8 +219,25 @@ def follow(
                     points[n, 0] = points[first[lines], 0]
                     points[n, 1] = points[first[lines], 1]
                     n += 1
-                ends[lines, 0] = border[start] if turn == 0 else -2
-                ends[lines, 1] = border[x] if turn == 0 else -2
+                ends[lines, 0] = (border[start] if border[start] >= 0 else -1) if turn == 0 else -2
+                ends[lines, 1] = (border[x] if border[x] >= 0 else -1) if turn == 0 else -2
                 lines += 1
                 first[lines] = <int>n
     return lines
+
+
+def gather(
+    const float[:, ::1] points, const long long[::1] begin, const long long[::1] count, const long long[::1] step,
+    float[:, ::1] out,
+):
+    """Runs of points one after the other: of run k count[k] points from begin[k] on, step[k] 1 forwards, -1 backwards."""
+    cdef Py_ssize_t k, p, i
+    cdef Py_ssize_t n = 0
+    with nogil:
+        for k in range(begin.shape[0]):
+            p = begin[k]
+            for i in range(count[k]):
+                out[n, 0] = points[p, 0]
+                out[n, 1] = points[p, 1]
+                n += 1
+                p += step[k]

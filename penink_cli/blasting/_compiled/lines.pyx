@@ -24,7 +24,12 @@ cdef inline double _chance(unsigned long long seed, unsigned long long a, unsign
     return ((z ^ (z >> 31)) >> 11) * 1.1102230246251565e-16
 
 
-def lengths(const double[:, ::1] points, const long long[::1] first, double[::1] out):
+ctypedef fused Number:
+    float
+    double
+
+
+def lengths(const Number[:, ::1] points, const long long[::1] first, double[::1] out):
     """How long each polyline is."""
     cdef Py_ssize_t i, p
     cdef double x, y, run
@@ -39,7 +44,7 @@ def lengths(const double[:, ::1] points, const long long[::1] first, double[::1]
 
 
 def even(
-    const double[:, ::1] points, const long long[::1] first, const double[::1] length, const long long[::1] which,
+    const float[:, ::1] points, const long long[::1] first, const double[::1] length, const long long[::1] which,
     const long long[::1] begin, double[:, ::1] out,
 ):
     """Some of the lines anew in equal steps, which[k] from begin[k] on in out, its ends among its points."""
@@ -69,6 +74,20 @@ def even(
                 out[begin[j] + k, 1] = points[p, 1] + f * y
             out[begin[j + 1] - 1, 0] = points[first[i + 1] - 1, 0]
             out[begin[j + 1] - 1, 1] = points[first[i + 1] - 1, 1]
+
+
+def look_up(
+    const float[:, ::1] values, const double[:, ::1] points, double left, double top, double dx, double dy, float[::1] out
+):
+    """The value at the node nearest to each point, node (row j, column i) being at (left + i dx, top + j dy)."""
+    cdef Py_ssize_t p, i, j
+    with nogil:
+        for p in range(points.shape[0]):
+            i = <Py_ssize_t>floor((points[p, 0] - left) / dx + 0.5)
+            j = <Py_ssize_t>floor((points[p, 1] - top) / dy + 0.5)
+            i = 0 if i < 0 else (values.shape[1] - 1 if i >= values.shape[1] else i)
+            j = 0 if j < 0 else (values.shape[0] - 1 if j >= values.shape[0] else j)
+            out[p] = values[j, i]
 
 
 def smooth(double[:, ::1] points, const long long[::1] first, const unsigned char[::1] rounds, const unsigned char[::1] ring):
