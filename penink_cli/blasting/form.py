@@ -17,6 +17,7 @@ from penink_cli.blasting.phase import Field, Nodes, Plane, solve
 from penink_cli.blasting.shares import box_mean
 from penink_cli.blasting.sheet import SIGMA_PT, Cells, Sheet, resample
 from penink_cli.ground.angles import direction
+from penink_cli.ground.device import MEAN
 from penink_cli.ground.model import Floats, HatchLayer, Ints
 
 #: Lengths of strokes, points: they look shorter where they bend, and many end sooner because their line does.
@@ -214,7 +215,9 @@ class Form:
         found = level_lines(field, phase, level, self.sheet.each, wanted)
         lines = pen_lines.evened(found, sweep.SHORTEST_PT)
         spacing = 1 / self._at(field.density, lines.points)
-        return pen_lines.turned_rings(pen_lines.smoothed(lines, spacing), seed)
+        pen_lines.smooth(lines, spacing)
+        pen_lines.turn_rings(lines, seed)
+        return lines
 
     def _strokes(
         self, lines: Lines, density: Plane, stroke_pt: tuple[float, float], pen: float, seed: int
@@ -254,7 +257,7 @@ class Form:
 
     def _painted(self, pen: float) -> float:
         """How wide a device paints a stroke of the pen, whatever its direction."""
-        return pen + 1.27 * self.sheet.gain_pt
+        return pen + MEAN * self.sheet.gain_pt
 
     def _at(self, values: Plane, points: npt.NDArray[np.floating]) -> Plane:
         """Values (rows, columns of the nodes) at points (n, 2)."""

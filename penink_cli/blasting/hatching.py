@@ -22,7 +22,7 @@ from penink_cli.blasting.form import Form
 from penink_cli.blasting.shares import ALONE, shares
 from penink_cli.blasting.sheet import Cells, Sheet
 from penink_cli.ground.device import MEAN
-from penink_cli.ground.model import EdgeList, HatchLayer, Strokes
+from penink_cli.ground.model import EdgeList, Floats, HatchLayer, Strokes
 
 #: What a run of ink must gain, in cells × tone: less, and it is not worth a stroke.
 RUN_COST = 0.25
@@ -96,20 +96,15 @@ def hatch_sheet(
     for turn in range(ROUNDS):
         tick()
         if turn < SWEEPS:
-            smooth = ((sheet.low_pass(density) if turn else wide) / sheet.weight - there) / (1 - there)
-            smooth = np.clip(smooth, 0.0, 0.995).astype(np.float64)
-            around = sheet.spread(sheet.seen(density))
-            if form:
-                for _ in range(WIDER):
-                    around = sheet.spread(sheet.seen(around))
             laid = []  # those of the round before are no longer needed
-            covers = shares(smooth, around.astype(np.float64), layers, BY_ITSELF if form else ALONE)
-            laid = [
-                form.swept(i, cover, pen, fine, seed * 64 + i)
-                if form
-                else candidates.swept(sheet, cover, layer, pen, fine, gain_pt, borders, seed * 64 + i)
-                for i, (layer, pen, fine, cover) in enumerate(zip(layers, pens, finest, covers))
-            ]
+            smooth = ((sheet.low_pass(density) if turn else wide) / sheet.weight - there) / (1 - there)
+            covers = layer_shares(sheet, smooth, density, layers, form is not None)
+            for i, (layer, pen, hair) in enumerate(zip(layers, pens, finest)):
+                cover, own_seed = covers.pop(0), seed * 64 + i
+                if form:
+                    laid.append(form.swept(i, cover, pen, hair, own_seed))
+                else:
+                    laid.append(candidates.swept(sheet, cover, layer, pen, hair, gain_pt, borders, own_seed))
         sheet.clear()
         if turn:
             sheet.owe(wanted)
@@ -144,6 +139,17 @@ def hatch_sheet(
     if pen_pt is None and len(drawn):
         drawn = press(sheet, drawn, seed, crowd)
     return drawn
+
+
+def layer_shares(
+    sheet: Sheet, smooth: Cells, density: Cells, layers: tuple[HatchLayer, ...], along_form: bool
+) -> list[Floats]:
+    """How much each layer is to cover (rows, columns) of the low-passed tone, by what the eye sees of the density."""
+    around = sheet.spread(sheet.seen(density))
+    for _ in range(WIDER if along_form else 0):
+        around = sheet.spread(sheet.seen(around))
+    wanted = np.clip(smooth, 0.0, 0.995).astype(np.float64)
+    return shares(wanted, around.astype(np.float64), layers, BY_ITSELF if along_form else ALONE)
 
 
 def draw_first(sheet: Sheet, strokes: Strokes) -> None:

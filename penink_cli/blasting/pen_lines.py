@@ -64,12 +64,10 @@ def look_up(values: Plane, nodes: Nodes, points: npt.NDArray[np.floating]) -> Pl
     return out
 
 
-def smoothed(lines: Lines, spacing: npt.NDArray[np.floating]) -> Lines:
-    """Lines without the corners that the grid gives them, evened out the more the further (p,) they are apart."""
+def smooth(lines: Lines, spacing: npt.NDArray[np.floating]) -> None:
+    """Take from lines, in place, the corners that the grid gave them, the more the further (p,) they are apart."""
     rounds = np.clip(SMOOTHING * spacing * spacing, FEWEST_ROUNDS, MOST_ROUNDS).astype(np.uint8)
-    points = lines.points.copy()
-    _lines.smooth(points, lines.first, rounds, lines.ring.astype(np.uint8))
-    return Lines(points, lines.first, lines.ring)
+    _lines.smooth(lines.points, lines.first, rounds, lines.ring.astype(np.uint8))
 
 
 def live(lines: Lines, wanted: npt.NDArray[np.bool_], fewest: int = 3) -> tuple[Lines, npt.NDArray[np.bool_]]:
@@ -93,15 +91,13 @@ def live(lines: Lines, wanted: npt.NDArray[np.bool_], fewest: int = 3) -> tuple[
     return Lines(points, first, lines.ring[line] & ~cut.any(axis=1)), cut
 
 
-def turned_rings(lines: Lines, seed: int) -> Lines:
-    """Rings begun anywhere: where they were found first they would all begin along one line."""
-    points = lines.points.copy()
+def turn_rings(lines: Lines, seed: int) -> None:
+    """Let rings, in place, begin anywhere: where they were found first they would all begin along one line."""
     rng = np.random.default_rng([seed & 0xFFFFFFFF, 9])
     for i, at in zip(np.flatnonzero(lines.ring).tolist(), rng.random(int(lines.ring.sum())).tolist()):
-        ring = points[lines.first[i] : lines.first[i + 1]]
+        ring = lines.points[lines.first[i] : lines.first[i + 1]]
         ring[:-1] = np.roll(ring[:-1], -int(at * (len(ring) - 1)), axis=0)
         ring[-1] = ring[0]
-    return Lines(points, lines.first, lines.ring)
 
 
 def cut(lines: Lines, spacing: Floats, stroke_pt: tuple[float, float], shortest_pt: float, seed: int) -> Parts:

@@ -85,7 +85,7 @@ def test_threads_change_nothing(monkeypatch) -> None:
 @pytest.mark.parametrize(("turn", "most"), [(circles, 1.0), (waves, 2.0), (lambda x, y: -np.arctan2(y, x), 3.0)])
 def test_lines_run_along_the_field(turn, most) -> None:
     lines = pen_lines.evened(lines_of(field(turn)), 7.0)
-    lines = pen_lines.smoothed(lines, np.full(len(lines.points), 2.0))
+    pen_lines.smooth(lines, np.full(len(lines.points), 2.0))
     last = lines.first[1:] - 1
     legs = np.delete(np.diff(lines.points, axis=0), last[:-1], axis=0)
     middle = np.delete((lines.points[1:] + lines.points[:-1]) / 2, last[:-1], axis=0)
@@ -125,8 +125,8 @@ def test_rings_close() -> None:
     for i in rings:
         ring = lines.points[lines.first[i] : lines.first[i + 1]]
         assert np.array_equal(ring[0], ring[-1])
-    turned = pen_lines.turned_rings(lines, 1)
-    begins = turned.points[turned.first[:-1]][rings]
+    pen_lines.turn_rings(lines, 1)
+    begins = lines.points[lines.first[:-1]][rings]
     assert np.std(np.arctan2(begins[:, 1], begins[:, 0])) > 1
 
 
