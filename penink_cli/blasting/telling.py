@@ -7,8 +7,7 @@ import numpy.typing as npt
 
 from penink_cli.blasting.sheet import CELL_PT, coverage, resample
 from penink_cli.composition.filters import blurred
-from penink_cli.ground.model import Floats, Lines, Strokes
-from penink_cli.lines.choice import LineChoice
+from penink_cli.ground.model import Floats, LineChoice, Lines, Strokes
 from penink_cli.lines.strokes import line_strokes
 
 #: Light lines: how broad the broadest is, and how many there may be.

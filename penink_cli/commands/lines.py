@@ -58,7 +58,8 @@ def lines(
     penink to-ps hatching.strokes.jsonl lines.strokes.jsonl -o photo.ps
     """
     from penink_cli.formats import strokes
-    from penink_cli.lines.choice import LineChoice, least_rank
+    from penink_cli.ground.model import LineChoice
+    from penink_cli.lines.choice import least_rank
     from penink_cli.lines.strokes import line_strokes
     from penink_cli.options.sheet import check_sheet
 

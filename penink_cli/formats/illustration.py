@@ -18,10 +18,21 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
-from penink_cli.formats import compact, directions, edge_list, pgm, strict_json
+from penink_cli.formats import compact, compact_lines, directions, edge_list, pgm, strict_json
+from penink_cli.formats import lines as lines_format
 from penink_cli.formats import texture as texture_format
 from penink_cli.ground.errors import FormatError, LimitError, PeninkError
-from penink_cli.ground.model import Directions, EdgeList, GreyImage, Illustration, Layer, OutlineChoice, Texture
+from penink_cli.ground.model import (
+    Directions,
+    EdgeList,
+    GreyImage,
+    Illustration,
+    Layer,
+    LineChoice,
+    Lines,
+    OutlineChoice,
+    Texture,
+)
 
 FORMAT = "penink-illustration"
 MANIFEST = "illustration.json"  # its name within an archive
@@ -108,6 +119,28 @@ def _layer(item: dict[str, Any], place: str, fetch: Fetch, shipped: Shipped, max
         seed=strict_json.whole(item.get("seed", 0), f"{place}: seed", 0, 2**63 - 1),
         outline=_outline(item["outline"], f"{place}: outline") if "outline" in item else None,
         directions=field,
+        lines=member("lines", _lines) if "lines" in item else None,
+        line=_line(item["line"], f"{place}: line") if "line" in item else LineChoice(),
+    )
+
+
+def _line(item: Any, place: str) -> LineChoice:
+    if not isinstance(item, dict):
+        raise FormatError(f"{place} is {strict_json.quoted(item)}; an object is needed")
+    default = LineChoice()
+    even = item.get("even", default.even)
+    if type(even) is not bool:
+        raise FormatError(f"{place}: even is {strict_json.quoted(even)}; true or false is needed")
+
+    def number(name: str, default: Any, least: float, most: float) -> Any:
+        return strict_json.number(item[name], f"{place}: {name}", least, most) if name in item else default
+
+    return LineChoice(
+        pen_pt=_length(item, "pen", MAX_PEN, place) if "pen" in item else default.pen_pt,
+        even=even,
+        density=number("density", default.density, 0.0001, 1e4),
+        per_inch2=number("per_inch2", default.per_inch2, 0.0001, 1e4),
+        min_rank=number("min_rank", default.min_rank, 0, lines_format.MAX_RANK),
     )
 
 
@@ -155,6 +188,12 @@ def _directions(data: bytes, samples: GreyImage, max_pixels: int) -> Directions:
     return found
 
 
+def _lines(data: bytes) -> Lines:
+    if data.startswith(compact_lines.LINES):
+        return compact_lines.lines_from(data)
+    return lines_format.read(io.BytesIO(data), "")
+
+
 def _texture(data: bytes) -> Texture:
     if data.startswith(compact.TEXT):
         data = compact.text_from(data)
@@ -179,6 +218,11 @@ def members(illustration: Illustration) -> dict[str, bytes]:
         if layer.directions is not None:
             item["directions"] = f"{i}.directions"
             files[item["directions"]] = compact.directions_bytes(layer.directions)
+        if layer.lines is not None:
+            item["lines"] = f"{i}.lines"
+            files[item["lines"]] = compact_lines.lines_bytes(layer.lines)
+            if chosen := _line_item(layer.line):
+                item["line"] = chosen
         if layer.texture_name is None:
             item["texture"] = f"{i}.texture"
             files[item["texture"]] = compact.text_bytes(_texture_bytes(layer.texture))
@@ -202,6 +246,21 @@ def members(illustration: Illustration) -> dict[str, bytes]:
     }  # fmt: skip
     files[MANIFEST] = json.dumps(manifest, separators=(",", ":")).encode("ascii")
     return files
+
+
+def _line_item(line: LineChoice) -> dict[str, Any]:
+    default = LineChoice()
+    item = {}
+    for name, value, usual in (
+        ("pen", line.pen_pt, default.pen_pt),
+        ("even", line.even, default.even),
+        ("density", line.density, default.density),
+        ("per_inch2", line.per_inch2, default.per_inch2),
+        ("min_rank", line.min_rank, default.min_rank),
+    ):
+        if value != usual:
+            item[name] = _plain(value)
+    return item
 
 
 def _outline_item(outline: OutlineChoice) -> dict[str, Any]:
@@ -243,13 +302,17 @@ def rounded(illustration: Illustration) -> Illustration:
             texture = _texture(_texture_bytes(texture))
         if field is not None:
             field = compact.directions_from(compact.directions_bytes(field))
+        lines, line = layer.lines, LineChoice()
+        if lines is not None:
+            lines = compact_lines.lines_from(compact_lines.lines_bytes(lines))
+            line = _line(_line_item(layer.line), "line")
         if outline is not None:
             outline = _outline(_outline_item(outline), "outline")
         layers.append(
             replace(
                 layer, samples=compact.requantised(layer.samples, layer.levels), edges=edges, texture=texture,
                 pen_pt=_plain(layer.pen_pt), gamma=float(_plain(layer.gamma)), outline=outline,
-                directions=field,
+                directions=field, lines=lines, line=line,
             )
         )
     return Illustration(_plain(illustration.width), _plain(illustration.height), tuple(layers))

@@ -381,6 +381,22 @@ class OutlineChoice:
     regions: tuple[tuple[float, float], ...] = ()
 
 
+@dataclass(frozen=True)
+class LineChoice:
+    """Which telling lines of a layer are drawn, and how.
+
+    pen_pt: width of the broadest strokes. even: one width from end to end, as a technical pen draws.
+    density: points of line in a square point that there is room for. per_inch2: inches of line in a square inch
+    that all lines may come to. min_rank: the least rank, None for one that suits the size.
+    """
+
+    pen_pt: float = 1.3
+    even: bool = False
+    density: float = 0.13
+    per_inch2: float = 6.0
+    min_rank: float | None = None
+
+
 @dataclass(frozen=True, eq=False)
 class Layer:
     """One overlay of an illustration: grey, edges, and the strokes it is to be drawn with.
@@ -392,6 +408,7 @@ class Layer:
     gamma, rule, seed: as `blast` takes them.
     outline: None for no outline strokes.
     directions: what the hatching follows, None where it lies at the texture's angles.
+    lines, line: its telling lines, None for none, and how they are drawn.
     """
 
     samples: GreyImage
@@ -406,6 +423,8 @@ class Layer:
     seed: int = 0
     outline: OutlineChoice | None = None
     directions: Directions | None = None
+    lines: Lines | None = None
+    line: LineChoice = LineChoice()
 
 
 @dataclass(frozen=True, eq=False)

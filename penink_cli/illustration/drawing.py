@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from penink_cli.ground.errors import ParameterError
-from penink_cli.ground.model import EdgeList, Floats, GreyImage, OutlineChoice, Strokes, Texture
+from penink_cli.ground.model import EdgeList, Floats, GreyImage, LineChoice, Lines, OutlineChoice, Strokes, Texture
 
 PIXELS_PER_PT = 2.0  # of the grey that is blasted: half the distance between the closest strokes
 
@@ -71,6 +71,15 @@ def outlined(
 ) -> Strokes:  # fmt: skip
     """Outline strokes, as a strokes file holds them."""
     return outline_strokes(edges, width_pt, height_pt, choice, ink, device_dpi).rounded()
+
+
+def lined(
+    lines: Lines, width_pt: float, height_pt: float, choice: LineChoice, device_dpi: float | None = None
+) -> Strokes:
+    """Strokes of the telling lines that there is room for, as a strokes file holds them."""
+    from penink_cli.lines.strokes import line_strokes
+
+    return replace(line_strokes(lines, width_pt, height_pt, choice), device_dpi=device_dpi).rounded()
 
 
 def blasted(

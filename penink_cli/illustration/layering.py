@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from penink_cli.ground.model import Floats, GreyImage, Illustration, Strokes
-from penink_cli.illustration.drawing import Advance, enlarged, grey_size, outlined, tone_curve
+from penink_cli.illustration.drawing import Advance, enlarged, grey_size, lined, outlined, tone_curve
 
 LEAST_TONE = 1 / 255  # below it an overlay is paper
 #: Layers that share a sheet are hatched anew with what was left over, so many times in all at the most, unless
@@ -31,10 +31,11 @@ def layer_strokes(
 ) -> list[tuple[Strokes, Strokes]]:
     """Hatching and outline strokes of each layer, bottom first, for a picture width_pt wide.
 
-    Outlines are ink first, those of all layers; then each layer is hatched up to the sum of its tone and of the layers
-    below, with their ink counted, wherever it has tone itself: so tones add up and no ink is there twice. What is left
-    over along the layers' common borders, where neither is free to add ink, is fed back to all of them. A layer with
-    the threshold rule is hatched as an illustration that draws itself is on a device, whatever the others are.
+    Outlines and telling lines are ink first, those of all layers; then each layer is hatched up to the sum of its tone
+    and of the layers below, with their ink counted, wherever it has tone itself: so tones add up and no ink is there
+    twice. What is left over along the layers' common borders, where neither is free to add ink, is fed back to all of
+    them. A layer with the threshold rule is hatched as an illustration that draws itself is on a device, whatever the
+    others are.
     """
     height_pt = width_pt * illustration.height / illustration.width
     size = grey_size(width_pt, illustration.height / illustration.width)
@@ -44,6 +45,9 @@ def layer_strokes(
         if layer.outline is not None and layer.edges is not None:
             before = Strokes.joined(outlines) if outlines else None
             drawn = outlined(layer.edges, width_pt, height_pt, layer.outline, before, device_dpi)
+        if layer.lines is not None:
+            told = lined(layer.lines, width_pt, height_pt, layer.line, device_dpi)
+            drawn = Strokes.joined([drawn, told]) if len(drawn) else told
         outlines.append(drawn)
     greys = [enlarged(layer.samples, layer.edges, size, threads) for layer in illustration.layers]
     best: tuple[int, list[Strokes]] | None = None
@@ -102,7 +106,7 @@ def _hatched(
             hatched = blast(
                 wanted, width_pt, height_pt, layer.edges, layer.texture, seed=seed + layer.seed + i,
                 pen_pt=layer.pen_pt, device_dpi=device_dpi, rule=layer.rule, outlines=ink if len(ink) else None,
-                threads=threads,
+                directions=layer.directions, lines=layer.lines, threads=threads,
             )  # fmt: skip
         hatched = hatched.rounded()
         ink = Strokes.joined([ink, hatched])

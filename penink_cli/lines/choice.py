@@ -3,36 +3,19 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
-from penink_cli.ground.model import Floats, Ints, Lines
+from penink_cli.ground.model import Floats, Ints, LineChoice, Lines
 
 #: Room is kept on a map of such cells (points), over a Gaussian of this σ.
 CELL_PT, ROOM_PT = 3.0, 10.0
 #: A line of this rank may go where there is DENSITY; one of higher rank where it is fuller, up to MOST times.
 USUAL_RANK, LEAST_PART, MOST = 6.0, 0.7, 1.6
 #: The least rank at this size on paper (root of the area, points): with more room faint lines become worth while.
-SIZE_PT, LEAST_RANK, RANKS = 432.0, 0.8, (0.4, 1.6)
+SIZE_PT, LEAST_RANK, RANKS = 432.0, 0.8, (0.5, 1.6)
 #: What is shorter on paper is no line, what is finer no spot.
 SHORTEST_PT, FINEST_SPOT_PT = 3.0, 0.35
-
-
-@dataclass(frozen=True)
-class LineChoice:
-    """Which telling lines are drawn, and how.
-
-    pen_pt: width of the broadest strokes. even: one width from end to end, as a technical pen draws.
-    density: points of line in a square point that there is room for. per_inch2: inches of line in a square inch
-    that all lines may come to. min_rank: the least rank, None for one that suits the size.
-    """
-
-    pen_pt: float = 1.3
-    even: bool = False
-    density: float = 0.13
-    per_inch2: float = 6.0
-    min_rank: float | None = None
 
 
 def least_rank(width_pt: float, height_pt: float) -> float:

@@ -58,9 +58,9 @@ FAR, NEAR, FAR_RANK = 0.7, 5.0, 0.45
 FIELD, GROUND = 8.0, 4.0
 #: Lines no further from the frame than this (pixels) all along are a scan's rim.
 RIM = 5.0
-LEAST_RANK, SHORTEST = 0.4, 5.0
-#: A point is kept every so many pixels, and where a line ends.
-STEP = 4.0
+LEAST_RANK, SHORTEST = 0.5, 5.0
+#: A point is kept every so many steps; a smooth curve through them strays by a fifth of a pixel.
+STEP = 6.0
 
 
 def detect_lines(
@@ -274,12 +274,11 @@ def _at_rim(line: _Line, shape: tuple[int, ...]) -> bool:
 
 
 def _thinned(points: Floats) -> Floats:
-    """About one point every STEP, the first and the last among them."""
+    """About one point every STEP, the first and the last among them: even spacing is kept in the fewest bytes."""
     if len(points) < 3:
         return points
-    count = max(2, math.ceil((len(points) - 1) / STEP) + 1)
-    at = [(len(points) - 1) * k // (count - 1) for k in range(count)]
-    return points[at]
+    count = max(3, math.ceil((len(points) - 1) / STEP) + 1)
+    return points[[(len(points) - 1) * k // (count - 1) for k in range(count)]]
 
 
 def _assembled(found: list[_Line], columns: int, rows: int, width: int, height: int) -> Lines:

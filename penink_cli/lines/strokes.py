@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 
-from penink_cli.ground.model import Floats, Lines, Strokes
-from penink_cli.lines.choice import LineChoice, chosen, lengths
+from penink_cli.ground.model import Floats, LineChoice, Lines, Strokes
+from penink_cli.lines.choice import chosen, lengths
 
 #: Distance of knots; detail finer than SMOOTH is smoothed away.
 KNOT_PT, SMOOTH_PT = 3.0, 0.6
@@ -36,23 +36,36 @@ def line_strokes(
 
 
 def _knots(points: Floats, weight: Floats) -> tuple[Floats, Floats, bool]:
-    """Knots (k, 2) of a smooth curve along the points, the weight at each, and whether it closes."""
+    """Knots (k, 2) of a smooth curve through the points, the weight at each, and whether it closes."""
     steps = lengths(points)
-    run = np.concatenate([[0.0], np.cumsum(steps)])
-    spacing = float(run[-1]) / len(steps)
     gap = points[0] - points[-1]
-    ring = len(points) > 7 and math.sqrt(float(gap[0] * gap[0] + gap[1] * gap[1])) < 1.5 * spacing
+    ring = len(points) > 5 and math.sqrt(float(gap[0] * gap[0] + gap[1] * gap[1])) < float(steps.max()) / 3
     if ring:
         points = np.concatenate([points[:-1], points[:1]])
-    smooth = points
+    smooth, weight = _dense(points, weight, ring)
+    run = np.concatenate([[0.0], np.cumsum(lengths(smooth))])
+    spacing = float(run[-1]) / (len(smooth) - 1)
     for _ in range(min(40, round(2 * (SMOOTH_PT / spacing) ** 2))):
         inner = (smooth[:-2] + 2 * smooth[1:-1] + smooth[2:]) / 4
         ends = (smooth[-2:-1] + 2 * smooth[:1] + smooth[1:2]) / 4 if ring else smooth[:1]
         smooth = np.concatenate([ends, inner, ends if ring else smooth[-1:]])
-    count = max(1, math.ceil(run[-1] / max(KNOT_PT, spacing)))
+    count = max(1, math.ceil(run[-1] / KNOT_PT))
     at = np.arange(count + 1) * (run[-1] / count)
     x, y, w = (np.interp(at, run, values) for values in (smooth[:, 0], smooth[:, 1], weight))
     return np.column_stack([x, y]), w, ring and count > 2
+
+
+def _dense(points: Floats, weight: Floats, ring: bool) -> tuple[Floats, Floats]:
+    """The curve through points (k, 2), as points no further apart than half of KNOT_PT, and their weights."""
+    control = _curve(points, ring)
+    n = np.maximum(np.ceil(lengths(points) / (KNOT_PT / 2)), 1).astype(np.int64)
+    leg = np.repeat(np.arange(len(n)), n)
+    t = (np.arange(len(leg)) - np.repeat(np.cumsum(n) - n, n)) / n[leg]
+    a, b, c, d = (control[3 * leg + k] for k in range(4))
+    s, u = (1 - t)[:, None], t[:, None]
+    dense = s * s * s * a + 3 * s * s * u * b + 3 * s * u * u * c + u * u * u * d
+    weights = weight[leg] * (1 - t) + weight[leg + 1] * t
+    return np.concatenate([dense, points[-1:]]), np.append(weights, weight[-1])
 
 
 def _curve(knots: Floats, ring: bool) -> Floats:

@@ -7,8 +7,7 @@ import numpy as np
 from penink_cli.blasting.blast import blast
 from penink_cli.blasting.sheet import coverage
 from penink_cli.blasting.telling import told
-from penink_cli.ground.model import Lines, Strokes
-from penink_cli.lines.choice import LineChoice
+from penink_cli.ground.model import LineChoice, Lines, Strokes
 from penink_cli.lines.strokes import line_strokes
 from penink_cli.options.textures import find_texture
 

@@ -90,11 +90,13 @@ def _illustration(data: bytes) -> Any:
 
 def _compact(data: bytes) -> Any:
     """A member of a packed illustration, by its first bytes."""
-    from penink_cli.formats import compact
+    from penink_cli.formats import compact, compact_lines
 
     try:
         if data.startswith(compact.SAMPLES):
             return compact.samples_from(data, MAX_PIXELS)
+        if data.startswith(compact_lines.LINES):
+            return compact_lines.lines_from(data)
         return compact.edges_from(data) if data.startswith(compact.EDGES) else compact.text_from(data)
     except PeninkError as error:
         raise error.from_source(SOURCE) from None

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from penink_cli.formats import archive, compact, directions, edge_list, pgm
+from penink_cli.formats import archive, compact, compact_lines, directions, edge_list, lines, pgm
 from penink_cli.ground.model import Directions, EdgeList, GreyImage
 from tests.faults.calls import encoded, strokes_text
 
@@ -67,4 +67,5 @@ def seeds(reader: str) -> Iterator[bytes]:
     if reader == "compact":
         yield compact.samples_bytes(IMAGE)
         yield compact.edges_bytes(EDGES, 80, 64)
+        yield compact_lines.lines_bytes(lines.read(io.BytesIO(json.dumps(LINES).encode()), ""))
         yield compact.text_bytes(b"some text, some text")

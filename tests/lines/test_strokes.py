@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from penink_cli.ground.model import Lines
-from penink_cli.lines.choice import LineChoice, chosen, least_rank
+from penink_cli.ground.model import LineChoice, Lines
+from penink_cli.lines.choice import chosen, least_rank
 from penink_cli.lines.strokes import line_strokes
 
 

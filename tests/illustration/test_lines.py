@@ -1,0 +1,121 @@
+"""Telling lines in illustrations: kept in few bytes, drawn at every size."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import json
+
+import numpy as np
+import pytest
+import skimage.data
+
+from penink_cli.formats import compact_lines, pgm, strokes
+from penink_cli.formats import lines as lines_format
+from penink_cli.ground.errors import FormatError, LimitError
+from penink_cli.ground.model import GreyImage, Lines
+from penink_cli.lines.detection import detect_lines
+from tests.formats.readers import written
+
+
+@pytest.fixture(scope="module")
+def face() -> Lines:
+    return detect_lines(skimage.data.astronaut()[:, :, 1].astype(np.float32) / 255)
+
+
+def test_lines_come_back_near_and_then_exactly(face):
+    packed = compact_lines.lines_bytes(face)
+    back = compact_lines.lines_from(packed)
+    assert compact_lines.lines_bytes(back) == packed
+    assert (back.width, back.height) == (512, 512) and len(back) <= len(face)
+    assert (np.diff(back.rank) <= 0).all()
+    for i in range(20):
+        assert back.rank[i] == pytest.approx(face.rank[i], abs=1 / 32 + 1e-9) and back.white[i] == face.white[i]
+        assert np.abs(back[i][0] - face[i][0]).max() < 0.25
+    assert back.breadth.sum() == pytest.approx(face.breadth.sum(), rel=0.05)
+    assert len(packed) < 6200
+
+
+def test_no_lines_and_a_single_spot():
+    empty = compact_lines.lines_from(compact_lines.lines_bytes(Lines(7, 9)))
+    assert len(empty) == 0 and (empty.width, empty.height) == (7, 9)
+    spot = Lines(
+        10**6, 1, np.array([[5e5, 0.5]]), np.array([0, 1]), np.ones(1), np.array([3.0]), np.zeros(1, bool),
+        np.array([4.0]),
+    )  # fmt: skip
+    back = compact_lines.lines_from(compact_lines.lines_bytes(spot))
+    assert len(back) == 1 and back.breadth[0] > 0
+
+
+@pytest.mark.parametrize("cut", [0, 4, 9, 40, -20])
+def test_what_is_cut_short_is_refused(cut, face):
+    packed = compact_lines.lines_bytes(face)
+    with pytest.raises(FormatError):
+        compact_lines.lines_from(packed[:cut] if cut else b"PIl1")
+
+
+def test_damage_is_refused_or_sound(face):
+    packed = compact_lines.lines_bytes(face)
+    for at in range(10, len(packed), len(packed) // 25):
+        damaged = packed[:at] + bytes([packed[at] ^ 0x55]) + packed[at + 1 :]
+        with contextlib.suppress(FormatError, LimitError):
+            lines_format.check(compact_lines.lines_from(damaged))
+
+
+def manifest(folder, **layer: object) -> None:
+    y, x = np.mgrid[:64, :64]
+    with (folder / "s.pgm").open("wb") as out:
+        pgm.write(out, GreyImage((120 + x + y // 2).astype(np.uint8)))
+    t = np.linspace(0, 3, 30)
+    points = np.column_stack([100 + 60 * np.cos(t), 100 + 60 * np.sin(t)])
+    lines = Lines(
+        200, 200, np.concatenate([points, [[50, 50]]]), np.array([0, 30, 31]), np.ones(31), np.array([9.0, 3]),
+        np.zeros(2, bool), np.array([0, 9.0]),
+    )  # fmt: skip
+    (folder / "l.json").write_bytes(written(lines_format.write, lines))
+    document = {
+        "format": "penink-illustration", "version": 1, "width": 144, "height": 144,
+        "layers": [{"samples": "s.pgm", "lines": "l.json", **layer}],
+    }  # fmt: skip
+    (folder / "i.illustration.json").write_text(json.dumps(document))
+
+
+def drawn(penink, folder, *words: object):
+    done = penink("render", *words)
+    assert done.returncode == 0, done.stderr
+    return strokes.read(io.BytesIO(done.stdout), "r")
+
+
+def test_loose_and_packed_draw_the_same_lines(penink, tmp_path):
+    manifest(tmp_path, line={"pen": 2, "min_rank": 1})
+    loose = tmp_path / "i.illustration.json"
+    assert penink("pack", loose, "-o", tmp_path / "i.penink").returncode == 0
+    assert penink("render", loose, "--scale", 1).stdout == penink("render", tmp_path / "i.penink", "--scale", 1).stdout
+    for scale in (0.5, 1, 3):
+        found = drawn(penink, tmp_path, tmp_path / "i.penink", "--scale", scale)
+        widest = found.widths.max()
+        assert widest == pytest.approx(9 * 144 * scale / 200, rel=0.05)  # the spot grows, the pen does not
+        assert found.widest[:-1].max() <= max(2.0, widest)
+        assert found.swells.any()
+
+
+def test_another_choice_is_another_drawing(penink, tmp_path):
+    manifest(tmp_path, line={"even": True, "pen": 0.5})
+    assert not drawn(penink, tmp_path, tmp_path / "i.illustration.json").swells.any()
+
+
+@pytest.mark.parametrize(
+    ("line", "complaint"),
+    [
+        ([], "line is []"),
+        ({"pen": 0}, "line: pen is 0"),
+        ({"even": 1}, "line: even is 1"),
+        ({"density": -1}, "line: density is -1"),
+        ({"per_inch2": True}, "line: per_inch2 is true"),
+        ({"min_rank": None}, "line: min_rank is null"),
+    ],
+)
+def test_a_wrong_choice_is_named(penink, tmp_path, line, complaint):
+    manifest(tmp_path, line=line)
+    done = penink("render", tmp_path / "i.illustration.json")
+    assert done.returncode == 1 and f"layer 0: {complaint}" in done.stderr.decode()
