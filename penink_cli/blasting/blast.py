@@ -7,14 +7,17 @@ from dataclasses import replace
 
 import numpy as np
 
-from penink_cli.blasting import hatching, tile
+from penink_cli.blasting import hatching, marks, tile
 from penink_cli.blasting.sheet import Cells, Sheet, resample
 from penink_cli.blasting.threshold import blast_by_threshold
+from penink_cli.ground.device import MEAN
 from penink_cli.ground.errors import ParameterError
 from penink_cli.ground.model import Directions, EdgeList, Floats, Lines, Strokes, Texture
 
 #: The rules by which strokes are chosen.
 RULES = ("best", "strict", "threshold")
+#: The broadest pen that small dark things are filled with.
+MARK_PT = 0.5
 #: How often a blast calls its `tick`, at the most.
 TICKS = 5
 
@@ -69,6 +72,9 @@ def blast(
     sheet = Sheet(tone, width_pt, height_pt, gain, threads or 1)
     if outlines is not None:
         hatching.draw_first(sheet, outlines)
+    finest = pen_pt or min([*texture.strokes.widths.tolist(), *(layer.pen_pt for layer in texture.layers), MARK_PT])
+    small = marks.marks(tone, width_pt, height_pt, finest, MEAN * gain, pen_pt is not None, sheet.ink)
+    hatching.draw_first(sheet, small)
     if rule == "best" and texture.layers:
         along = None if directions is None else field_at(sheet, directions, edges)
         strokes = hatching.hatch_sheet(sheet, texture.layers, edges, gain, seed, pen_pt, tick, along, told)
@@ -80,6 +86,8 @@ def blast(
             sheet.clear()  # the best round may not have been the last
             hatching.paint(sheet, strokes)
             strokes = hatching.press(sheet, strokes, seed, tile.crowd(sheet, texture))
+    if len(small):
+        strokes = Strokes.joined([small, strokes])
     tick()
     return replace(strokes, texture=texture.name, seed=seed, device_dpi=device_dpi)
 

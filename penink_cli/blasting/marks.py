@@ -1,0 +1,122 @@
+"""Marks: small dark things on bare paper, drawn as themselves before any hatching.
+
+A full stop, a letter or a leg is smaller than the strokes of a hatching: these would lie across it and stick out, or
+leave it pale. Here such a thing is filled, row by row, with short strokes of a fine pen that end where it ends.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from scipy import ndimage
+
+from penink_cli.blasting.sheet import Cells, resample
+from penink_cli.ground.model import Floats, Strokes
+
+#: A thing is where the tone exceeds half of solid; this dark at its core, with nothing darker than PAPER around it from
+#: NEAR to FAR points off, and no further from its border to its middle than HALF points.
+LEVEL, CORE, PAPER, NEAR_PT, FAR_PT, HALF_PT = 0.5, 0.75, 0.12, 1.0, 2.5, 7.0
+#: Rows of strokes: so many painted widths apart.
+PITCH = 0.8
+#: Up to this size (points) one dot is the whole thing, if it is no more than so many times as long as broad.
+DOT_PT, ROUND = 3.2, 1.4
+#: What is covered by so much is drawn already.
+INKED = 0.6
+#: The tone is looked at so finely, pixels in a point.
+FINE = 2.0
+
+
+def marks(
+    tone: Floats, width_pt: float, height_pt: float, pen_pt: float, gain_pt: float, fixed: bool, ink: Cells
+) -> Strokes:
+    """Strokes that fill every small dark thing of the tone (h, w) on a sheet of that size.
+
+    pen_pt: their width, that of dots too where it is `fixed`; gain_pt: how much wider the device paints them.
+    ink: (rows, columns) what is on the sheet already: what that covers is drawn.
+    """
+    none = Strokes(width_pt, height_pt)
+    h, w = tone.shape
+    if not (tone > LEVEL).any():
+        return none
+    if w < FINE * width_pt or h < FINE * height_pt:
+        h, w = max(h, round(FINE * height_pt)), max(w, round(FINE * width_pt))
+        tone = resample(tone, h, w)
+    px = math.sqrt(w * h / (width_pt * height_pt))  # pixels in a point
+    part, count = ndimage.label(tone > LEVEL, np.ones((3, 3), int))
+    if not count:
+        return none
+    chains: list[Floats] = []
+    widths: list[float] = []
+    scale = np.array([width_pt / w, height_pt / h])
+    reach = math.ceil(FAR_PT * px) + 1
+    most = 2 * math.ceil(40 * px)
+    for k, box in enumerate(ndimage.find_objects(part), 1):
+        if box[0].stop - box[0].start > most or box[1].stop - box[1].start > most:
+            continue
+        top, left = max(0, box[0].start - reach), max(0, box[1].start - reach)
+        window = (slice(top, box[0].stop + reach), slice(left, box[1].stop + reach))
+        mine = part[window] == k
+        around = tone[window]
+        if float(around[mine].max()) < CORE:
+            continue
+        off = ndimage.distance_transform_edt(~mine) / px
+        ring = (off >= NEAR_PT) & (off <= FAR_PT)
+        if ring.any() and float(around[ring].max()) > PAPER:
+            continue
+        if float(ndimage.distance_transform_edt(np.pad(mine, 1)).max()) / px > HALF_PT:
+            continue
+        rows, columns = np.nonzero(mine)
+        at = (rows + top) * ink.shape[0] // h, (columns + left) * ink.shape[1] // w
+        if math.fsum(ink[at].tolist()) > INKED * len(rows):
+            continue
+        area = math.fsum(np.minimum(around[off <= 1.0], 1.0).tolist()) / (px * px)
+        sides = (rows.max() - rows.min() + 1) / px, (columns.max() - columns.min() + 1) / px
+        size = 2 * math.sqrt(area / math.pi)
+        if not fixed and size <= DOT_PT and max(sides) <= ROUND * min(sides):
+            weight = np.where(off <= 1.0, around, 0.0)
+            total = math.fsum(weight.ravel().tolist())
+            x = math.fsum((weight * (np.arange(weight.shape[1]) + 0.5)).ravel().tolist()) / total + left
+            y = math.fsum((weight * (np.arange(weight.shape[0]) + 0.5)[:, None]).ravel().tolist()) / total + top
+            chains.append(np.array([[x, y]]) * scale)
+            widths.append(max(size - gain_pt, 0.1))
+            continue
+        _fill(np.where(off <= 1.0, around, 0.0), np.array([left, top]), scale, pen_pt, gain_pt, chains, widths, fixed)
+    return Strokes.of(width_pt, height_pt, chains, widths)
+
+
+def _fill(
+    tone: Floats, corner: Floats, scale: Floats, pen_pt: float, gain_pt: float, chains: list[Floats],
+    widths: list[float], fixed: bool,
+) -> None:  # fmt: skip
+    """Strokes along the rows of a thing, in points: tone (h, w) with nothing else in it, corner its place, pixels."""
+    painted = pen_pt + gain_pt
+    h, w = tone.shape
+    pitch = PITCH * painted / scale[1]
+    inset = painted / 2
+    ys = np.arange(pitch / 2, h, pitch)
+    # rows between pixel centres
+    at = np.clip(ys - 0.5, 0, h - 1)
+    i = np.minimum(at.astype(np.int64), max(h - 2, 0))
+    f = (at - i)[:, None]
+    lines = tone[i] * (1 - f) + tone[np.minimum(i + 1, h - 1)] * f
+    for y, line in zip(ys.tolist(), lines):
+        dark = line > LEVEL
+        edges = np.flatnonzero(np.diff(np.concatenate([[False], dark, [False]]).astype(np.int8)))
+        for a, b in zip(edges[::2].tolist(), edges[1::2].tolist()):
+            begin = _crossing(line, a - 1, a) if a else 0.0
+            end = _crossing(line, b - 1, b) if b < w else float(w)
+            x0, x1 = (begin + corner[0]) * scale[0], (end + corner[0]) * scale[0]
+            py = (y + corner[1]) * scale[1]
+            if x1 - x0 < 2 * inset:
+                chains.append(np.array([[(x0 + x1) / 2, py]]))
+                widths.append(pen_pt if fixed else max(min(pen_pt, x1 - x0 - gain_pt), 0.1))
+                continue
+            x0, x1 = x0 + inset, x1 - inset
+            chains.append(np.array([[x0 + (x1 - x0) * t / 3, py] for t in range(4)]))
+            widths.append(pen_pt)
+
+
+def _crossing(line: Floats, a: int, b: int) -> float:
+    """Where a row reaches LEVEL between the middles of two pixels, from its first pixel's left edge."""
+    return a + 0.5 + float((LEVEL - line[a]) / (line[b] - line[a]))
