@@ -16,6 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from penink_cli.blasting import curve_fitting, curves
+from penink_cli.blasting.constants import CLEAR, PIECE, PRESSURE, PRESSURE_LONG, SHORTEST, TAPER, THIN
 from penink_cli.geometry.trails import trails
 from penink_cli.ground.model import EdgeList, Floats, Ints, OutlineChoice, Strokes
 
@@ -25,15 +26,8 @@ STEP = 1.0  # pixels between the points that curves are fitted to
 ARM = 3.0  # pixels to each side that tell whether a vertex is a corner
 CORNER = 0.64  # cosine of the bend, 50°, from which it is one
 ONWARD = 0.5  # cosine of the sharpest bend that a stroke takes at a junction
-CLEAR = 1.8  # pens' widths that outline strokes keep from one another
-SHORTEST = 4.0  # pens' widths: anything shorter is a crumb
-PIECE_PT = 4.0  # longest piece of one width where the pen's pressure varies
 LIGHT = 0.5  # of the pen's width, for the faintest edges
 FULL = 0.4  # strength from which an edge gets all of it
-THIN = 0.55  # of the full width, at the tips of a stroke
-TAPER_PT = 14.0  # from the tip to the full width
-WAVER = 0.16  # the pressure's variation along a stroke, up and down
-WAVER_PT = 30.0  # over about that length
 
 
 @dataclass(frozen=True, eq=False)
@@ -225,7 +219,7 @@ def _swelling(control: Floats, pen_pt: float) -> tuple[Floats, Floats]:
     """The same curve in short pieces, each a segment, and the width of each: thin tips, a slow waver between."""
     segments = np.stack([control[:-1:3], control[1::3], control[2::3], control[3::3]], axis=1)
     rough = np.sqrt(((segments[:, 1:] - segments[:, :-1]) ** 2).sum(axis=2)).sum(axis=1)
-    counts = np.maximum(1, np.ceil(rough / PIECE_PT)).astype(np.int64)
+    counts = np.maximum(1, np.ceil(rough / PIECE)).astype(np.int64)
     which = np.repeat(np.arange(len(counts)), counts)
     k = np.arange(len(which)) - np.repeat(np.cumsum(counts) - counts, counts)
     pieces = curves.blossom(segments[which], k / counts[which], (k + 1) / counts[which])
@@ -233,9 +227,9 @@ def _swelling(control: Floats, pen_pt: float) -> tuple[Floats, Floats]:
     middle = np.cumsum(lengths) - lengths / 2
     total = float(lengths.sum())
     ring = bool((np.abs(control[0] - control[-1]) < 1e-9).all())
-    t = np.ones(len(middle)) if ring else np.clip(np.minimum(middle, total - middle) / min(TAPER_PT, total / 2), 0, 1)
+    t = np.ones(len(middle)) if ring else np.clip(np.minimum(middle, total - middle) / min(TAPER, total / 2), 0, 1)
     taper = THIN + (1 - THIN) * t * (2 - t)
-    width = pen_pt * taper * (1 + WAVER * _noise(middle / WAVER_PT, control[0]))
+    width = pen_pt * taper * (1 + PRESSURE * _noise(middle / PRESSURE_LONG, control[0]))
     width = np.maximum(np.round(width / pen_pt * 20) / 20, 0.3) * pen_pt
     return pieces.reshape(-1, 2), width
 

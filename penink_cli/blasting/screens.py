@@ -24,10 +24,27 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
+from penink_cli.blasting.constants import (
+    ACROSS,
+    ALONG,
+    BOW,
+    CHAIN_FACTOR,
+    CHAIN_STEP,
+    COVERS,
+    LINES,
+    LONG,
+    LONG_REST,
+    PARTS,
+    PIXEL,
+    SEED,
+    SEED_STEP,
+    TILT,
+    WAY_STEPS,
+    WIDENED,
+)
 from penink_cli.blasting.tile import thresholds
 from penink_cli.ground import exact
 from penink_cli.ground.angles import direction
-from penink_cli.ground.device import DOT
 from penink_cli.ground.model import Floats, HatchLayer, Ints, Texture
 
 Bytes = npt.NDArray[np.uint8]
@@ -35,14 +52,6 @@ Integers = npt.NDArray[np.int32]
 
 #: The effective width of all strokes of a table, points.
 PEN_PT = 0.54
-#: Lines of a hatching screen, one above the other; their number is a power of two.
-LINES = 256
-#: Size of a hatching screen's tile, points.
-ALONG_PT, ACROSS_PT = 288.0, 100.0
-#: Coverage of a screen with parts of its lines, piecewise linear (measured): half of them do not touch one another.
-PARTS, COVERS = (0.0, 0.5, 0.63, 0.75, 1.0), (0.0, 0.6912, 0.845, 0.943, 0.995)
-
-
 @dataclass(frozen=True, eq=False)
 class Screen:
     """Strokes with thresholds, on a tile that repeats.
@@ -124,7 +133,7 @@ def random_bytes(seed: int) -> Iterator[int]:
     """Numbers 0 … 255 from a congruence that 32-bit signed integers can hold, so that any device makes the same."""
     state = seed
     while True:
-        state = (state * 25173 + 13849) % 65536
+        state = (state * CHAIN_FACTOR + CHAIN_STEP) % 65536
         yield state >> 8
 
 
@@ -134,21 +143,21 @@ def lines(layer: HatchLayer, number: int) -> Screen:
     Line k lies at v = 100/256 (k + ½) pt. It is cut into strokes 42 to 73 pt long, each of which starts and ends
     up to 0.1 pt off the line and bows by up to 0.1 pt.
     """
-    byte = random_bytes(4711 + 97 * number)
+    byte = random_bytes(SEED + SEED_STEP * number)
     span = (layer.high - layer.low) / (1.0 - layer.low)  # coverage of this screen alone when it ends
     points, enters, line = [], [], []
     for k in range(LINES):
-        v = (k + 0.5) * ACROSS_PT / LINES
+        v = (k + 0.5) * ACROSS / LINES
         cover = float(np.interp((reversed_bits(k) + 0.5) / LINES, PARTS, COVERS))
-        u = next(byte) * ALONG_PT / 256
-        left = ALONG_PT
+        u = next(byte) * ALONG / 256
+        left = ALONG
         while left > 0:
-            length = 42.0 + next(byte) / 8
-            if left < length + 30:
+            length = LONG + next(byte) / 8
+            if left < length + LONG_REST:
                 length = left
             rise, fall, bow = (next(byte) / 128 - 1 for _ in range(3))
             if cover < span:
-                v0, v1, push = v + 0.1 * rise, v + 0.1 * fall, 0.15 * bow
+                v0, v1, push = v + TILT * rise, v + TILT * fall, BOW * bow
                 points.append(
                     [
                         (u, v0),
@@ -163,8 +172,8 @@ def lines(layer: HatchLayer, number: int) -> Screen:
             left -= length
     n = len(points)
     return Screen(
-        layer.angle, ALONG_PT, ACROSS_PT, np.array(points).reshape(-1, 2), np.arange(n + 1) * 4, np.array(enters),
-        np.array(COVERS[1:]), np.diff(COVERS) / np.diff(PARTS) * ACROSS_PT / LINES,
+        layer.angle, ALONG, ACROSS, np.array(points).reshape(-1, 2), np.arange(n + 1) * 4, np.array(enters),
+        np.array(COVERS[1:]), np.diff(COVERS) / np.diff(PARTS) * ACROSS / LINES,
         np.array(line, np.int32), levels(layer), widening(np.array([(0, 0), *[direction(layer.angle)] * 3])), layer,
     )  # fmt: skip
 
@@ -188,14 +197,14 @@ def give_way() -> Bytes:
     rank = np.array([reversed_bits(k) for k in range(LINES)])
     for r in range(LEVELS):
         there = np.flatnonzero(rank < 4 * r + 2)
-        home = (there + 0.5) * ACROSS_PT / LINES
+        home = (there + 0.5) * ACROSS / LINES
         at = home
         for _ in range(3):
             before, after = np.roll(at, 1), np.roll(at, -1)
-            before[0] -= ACROSS_PT
-            after[-1] += ACROSS_PT
+            before[0] -= ACROSS
+            after[-1] += ACROSS
             at = at / 2 + (before + after) / 4
-        out[r, there] = np.clip(np.floor(128.5 + 24 * (at - home)), 0, 255)
+        out[r, there] = np.clip(np.floor(128.5 + WAY_STEPS * (at - home)), 0, 255)
     return out
 
 
@@ -203,17 +212,13 @@ def give_way() -> Bytes:
 GRID_PT, FARTHEST = 0.25, 127
 #: Strokes that enter later than this add more bytes than ink: the first ones come again, elsewhere, instead.
 LATEST = 0.9
-#: The pixel of a device of 600 dpi, which tables are meant for, and what it adds to a pen (a dot's gain; a line's is
-#: 0.15): `PEN_PT` is a pen of 0.4 pt on it.
-PIXEL_PT = 72 / 600
-WIDENED_PT = round(DOT * PIXEL_PT, 2)
 
 
 def strokes(texture: Texture) -> Screen:
     """The screen of any other texture: the segments of its tile's strokes, on a grid of 1/4 pt."""
     tile = texture.strokes
-    pen = float(np.median(tile.widths)) + WIDENED_PT
-    enters = thresholds(texture, PIXEL_PT)
+    pen = float(np.median(tile.widths)) + WIDENED
+    enters = thresholds(texture, PIXEL)
     points, limits, equal = [], [], []
     for i in np.flatnonzero(enters <= LATEST).tolist():
         stroke = tile[i]
@@ -256,7 +261,7 @@ def widening(cubics: Floats) -> float:
     """
     steps = np.diff(cubics.reshape(-1, 4, 2), axis=1)
     length = np.sqrt((steps**2).sum(axis=2)).sum()
-    return float(np.abs(steps).sum() / length) if length > 0 else WIDENED_PT / PIXEL_PT
+    return float(np.abs(steps).sum() / length) if length > 0 else WIDENED / PIXEL
 
 
 def _short(segment: Floats) -> list[Floats]:
@@ -274,8 +279,8 @@ def table(texture: Texture, pen_pt: float | None = None) -> ThresholdTable:
     """The threshold table of any texture; pen_pt: one pen for all its strokes."""
     pen = pen_pt or (float(np.median(texture.strokes.widths)) if len(texture.strokes) else 0.4)
     if not texture.layers:
-        own = float(np.median(texture.strokes.widths)) + WIDENED_PT
-        magnification = (pen + WIDENED_PT) / own
+        own = float(np.median(texture.strokes.widths)) + WIDENED
+        magnification = (pen + WIDENED) / own
         first = strokes(texture)
         return ThresholdTable(
             texture.name, (first, once_more(first, LATEST)), give_way(), own, magnification, texture.whole
@@ -284,4 +289,4 @@ def table(texture: Texture, pen_pt: float | None = None) -> ThresholdTable:
     for number, layer in enumerate(texture.layers):
         screens.append(lines(replace(layer, low=low), number))
         low = layer.high
-    return ThresholdTable(texture.name, tuple(screens), give_way(), PEN_PT, (pen + WIDENED_PT) / PEN_PT)
+    return ThresholdTable(texture.name, tuple(screens), give_way(), PEN_PT, (pen + WIDENED) / PEN_PT)

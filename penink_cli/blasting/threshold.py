@@ -17,16 +17,11 @@ import numpy.typing as npt
 
 from penink_cli.blasting import curves
 from penink_cli.blasting._compiled import threshold as _threshold
-from penink_cli.blasting.screens import PIXEL_PT, WIDENED_PT, Screen, ThresholdTable, table
+from penink_cli.blasting.constants import BLOCK, DEEP, GAP, LEAST_PIXELS, PIXEL, SHORT, TAKEN_UP, WIDENED
+from penink_cli.blasting.screens import Screen, ThresholdTable, table
 from penink_cli.blasting.sheet import resample
 from penink_cli.ground.angles import direction
 from penink_cli.ground.model import EdgeList, Floats, Ints, Strokes, Texture
-
-BLOCKS = 9.0  # units: side of the blocks in which ink is compared with tone
-GAP, SHORT, DEEP = 3, 3.0, 24.0
-#: Of textures that are not lines half of what is lacking in a block is chance, and more easily added than taken away:
-#: all of it fed back, scribble on coins was 1.1 % too dark, now 0.3.
-TAKEN_UP = 0.5
 
 Bytes = npt.NDArray[np.uint8]
 
@@ -54,9 +49,6 @@ def _copies(screen: Screen, width: float, height: float) -> npt.NDArray[np.int32
     return np.column_stack([a.ravel(), b.ravel()]).astype(np.int32)
 
 
-#: The finest pen, in device pixels with its gain, that is painted as wide as it should be: what is left of a thinner
-#: one when the gain is taken off is under one pixel, and that is painted without gain.
-LEAST_PIXELS = 2.45
 
 
 @dataclass(eq=False)
@@ -82,7 +74,7 @@ class Paper:
         begin = np.setdiff1d(np.arange(len(lines.points)), lines.first[1:] - 1)
         a, b = lines.points[begin], lines.points[np.minimum(begin + 1, len(lines.points) - 1)]
         owner = np.searchsorted(lines.first, begin, side="right") - 1
-        covered = np.sqrt(((b - a) ** 2).sum(axis=1)) * (ink.widths[owner] + WIDENED_PT)
+        covered = np.sqrt(((b - a) ** 2).sum(axis=1)) * (ink.widths[owner] + WIDENED)
         middle = (a + b) / 2
         inside = (middle >= 0).all(axis=1) & (middle < (self.width_pt, self.height_pt)).all(axis=1)
         x, y = (middle[inside] / self.side_pt).astype(np.int64).T
@@ -95,7 +87,7 @@ def paper(
     layers: Sequence[tuple[Texture, float | None]], width_pt: float, height_pt: float, dpi: float | None
 ) -> Paper:
     """A sheet for layers of these textures and pens."""
-    return Paper(width_pt, height_pt, BLOCKS * max(_unit_of(texture, pen, dpi) for texture, pen in layers))
+    return Paper(width_pt, height_pt, BLOCK * max(_unit_of(texture, pen, dpi) for texture, pen in layers))
 
 
 def in_255ths(tone: Floats) -> Bytes:
@@ -191,7 +183,7 @@ def _unit_of(texture: Texture, pen_pt: float | None, device_dpi: float | None) -
 def _unit(sizes: ThresholdTable, pen_pt: float | None, gain_pt: float) -> float:
     """The magnification of pen and tile, in points, for a pen if one is given, on a device that widens it so."""
     if pen_pt is not None:  # the table takes a printer of 600 dpi for granted
-        return (pen_pt + gain_pt * WIDENED_PT / PIXEL_PT) / sizes.pen_pt
+        return (pen_pt + gain_pt * WIDENED / PIXEL) / sizes.pen_pt
     return max(sizes.magnification, LEAST_PIXELS * gain_pt / sizes.pen_pt)
 
 

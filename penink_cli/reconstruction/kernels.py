@@ -12,6 +12,8 @@ from penink_cli.ground.model import Floats
 from penink_cli.reconstruction._compiled import kernels as _kernels
 
 KERNELS = ("cubic", "bspline")
+#: Below the first sum of cubic weights the B-spline is blended in, below the second, of its own, plain convolution.
+T1, T2 = 0.5, 1e-4
 
 
 @dataclass(frozen=True, eq=False)

@@ -15,7 +15,7 @@ from penink_cli.ground.model import Illustration
 from penink_cli.selfdrawing import packer
 from penink_cli.selfdrawing.data import LayerData, is_sent, layers, tile_bytes
 
-SOURCES = ("unpack.js", "reconstruct.js", "drawing.js", "outline.js", "data.js", "raster.js", "page.js")
+SOURCES = ("unpack.js", "constants.js", "reconstruct.js", "drawing.js", "outline.js", "data.js", "raster.js", "page.js")
 
 
 def write(illustration: Illustration, title: str, readable: bool = False) -> bytes:

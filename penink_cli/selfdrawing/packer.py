@@ -9,11 +9,16 @@ from importlib import resources
 
 import numpy as np
 
+from penink_cli.selfdrawing import constants
+
+PROLOGUES = {"constants.js": constants.javascript, "constants.ps": constants.postscript}
 _PS_TOKENS = re.compile(r"%[^\n]*|\((?:[^()\\]|\\.)*\)|[{}\[\]]|/?[^\s{}\[\]()%/]+")
 
 
 def source(name: str) -> str:
-    """One of the renderers' source files."""
+    """One of the renderers' source files, or the prologue that is written for each language."""
+    if name in PROLOGUES:
+        return PROLOGUES[name]()
     return (resources.files("penink_cli.selfdrawing") / "renderer" / name).read_text("utf-8")
 
 

@@ -14,7 +14,7 @@ from penink_cli.ground.model import Illustration
 from penink_cli.selfdrawing import packer
 from penink_cli.selfdrawing.data import LayerData, is_sent, layers, tile_bytes
 
-SOURCES = ("reconstruct.ps", "texture.ps", "drawing.ps", "outline.ps", "data.ps", "page.ps")
+SOURCES = ("constants.ps", "reconstruct.ps", "texture.ps", "drawing.ps", "outline.ps", "data.ps", "page.ps")
 PACKINGS = ("flate", "lzw", "readable")
 
 

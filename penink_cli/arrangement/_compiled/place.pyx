@@ -2,7 +2,8 @@
 """Compiled: a few edges in a window, and the changes that may be made to them."""
 
 import numpy as np
-from libc.math cimport INFINITY, atan2, fabs, sqrt
+from libc.math cimport INFINITY, fabs, sqrt
+from penink_cli.ground._compiled.real cimport angle_of
 
 
 cdef class Place:
@@ -162,7 +163,7 @@ cdef class Place:
             arm[0] = self.apart(u, v)
         if self.degree[w] < 3:
             arm[0] = min(arm[0], self.apart(w, v))
-        return fabs(atan2(ux * wy - uy * wx, ux * wx + uy * wy))
+        return fabs(angle_of(ux * wx + uy * wy, ux * wy - uy * wx))
 
     cdef void unite(self, int a, int b, double x, double y) noexcept nogil:
         """Vertices a and b as one, a, at x, y; of two edges that become one the first stays."""

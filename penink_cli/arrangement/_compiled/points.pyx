@@ -1,7 +1,8 @@
 # cython: boundscheck=False, wraparound=False, cdivision=True
 """Compiled: sub-pixel edge points and their links to neighbours. See gradient.py and chains.py."""
 
-from libc.math cimport fabs, log, sqrt, sqrtf
+from libc.math cimport fabs, sqrt, sqrtf
+from penink_cli.ground._compiled.real cimport logarithm
 
 
 cdef inline double _along_x(float[:, ::1] smooth, int i, int j) noexcept nogil:
@@ -86,8 +87,8 @@ def locate(float[:, ::1] smooth, int[:, ::1] pixel, double[:, ::1] out) -> None:
                     c = nx * _along_x(smooth, i + di, j + dj) + ny * _along_y(smooth, i + di, j + dj)
                     b = magnitude
                     if a > 0.05 * b and c > 0.05 * b:
-                        a = log(a / b)
-                        c = log(c / b)
+                        a = logarithm(a / b)
+                        c = logarithm(c / b)
                         bend = -(a + c)
                         if bend > 1e-3:
                             offset = (c - a) / (2 * bend)

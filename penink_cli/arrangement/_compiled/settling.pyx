@@ -1,7 +1,8 @@
 # cython: boundscheck=False, wraparound=False, cdivision=True
 """Compiled: one corner or junction after the other changed until it explains the photo best. See junctions.py."""
 
-from libc.math cimport INFINITY, fabs, floor, fmax, fmin, log
+from libc.math cimport INFINITY, fabs, floor, fmax, fmin
+from penink_cli.ground._compiled.real cimport logarithm
 from penink_cli.arrangement._compiled.place cimport MOST_EDGES, NEW, Place
 from penink_cli.arrangement._compiled.planar cimport Planar
 from penink_cli.arrangement._compiled.view cimport AROUND, VERTEX, View
@@ -187,7 +188,7 @@ cdef class Settler(View):
         if self.best.edges == MOST_EDGES:
             return
         gain = fmin(self.left_over, _OPTIMISM * self.promise(self.best, e, part)) / self.pixels
-        if self.pixels * log(rest / (rest - gain)) < VERTEX:
+        if self.pixels * logarithm(rest / (rest - gain)) < VERTEX:
             return
         self.other.take(self.best)
         v = self.other.vertex(
@@ -222,7 +223,7 @@ cdef class Settler(View):
         cdef double wanted = self.wanted
         self.left_over = self.look(self.best)
         rest = self.left_over / self.pixels
-        self.wanted += self.pixels * log((_EXPLAINED * rest + self.floor) / (rest + self.floor)) - _MARGIN
+        self.wanted += self.pixels * logarithm((_EXPLAINED * rest + self.floor) / (rest + self.floor)) - _MARGIN
         for u in range(self.best.vertices):
             for v in range(u):
                 if (

@@ -1,7 +1,8 @@
 # cython: boundscheck=False, wraparound=False, cdivision=True
 """Compiled: a place of the arrangement in a window, and what it takes to describe the photo by it. See junctions.py."""
 
-from libc.math cimport INFINITY, ceil, exp, floor, fmax, fmin, log
+from libc.math cimport INFINITY, ceil, floor, fmax, fmin
+from penink_cli.ground._compiled.real cimport exponential, logarithm
 from penink_cli.arrangement._compiled.place cimport Place
 from penink_cli.arrangement._compiled.planar cimport Planar
 from penink_cli.arrangement._compiled.regions cimport MOST_MOVED, MOST_SIDE
@@ -206,11 +207,11 @@ cdef class View(Window):
             vertices += place.degree[v] > 0
         score = self.trust * VERTEX * vertices
         left_over = self.settle(
-            place, self.trial, rounds, self.pixels * (exp((wanted - score) / self.pixels) - self.floor)
+            place, self.trial, rounds, self.pixels * (exponential((wanted - score) / self.pixels) - self.floor)
         )
         if left_over < 0:
             return INFINITY
-        score += self.pixels * log(left_over / self.pixels + self.floor) + self.trust * _REGION * self.regions
+        score += self.pixels * logarithm(left_over / self.pixels + self.floor) + self.trust * _REGION * self.regions
         if rounds > 0:
             for v in range(place.edges):
                 if place.crosses(place.a[v], place.b[v]):

@@ -4,7 +4,18 @@
 The self-drawing renderers are this module in PostScript and JavaScript, step by step.
 """
 
-from libc.math cimport ceil, floor, sin, sqrt
+from libc.math cimport ceil, floor, sqrt
+from penink_cli.ground._compiled.real cimport sine_of
+
+from penink_cli.blasting import constants
+
+cdef double WAY_STEPS = constants.WAY_STEPS
+cdef double GIVE = constants.GIVE
+cdef double SAMPLE = constants.SAMPLE
+cdef double STEEP = constants.STEEP
+cdef double EARLY = constants.EARLY
+cdef double[6] WAVER = constants.WAVER
+cdef double[5] WAVE = constants.WAVE
 
 
 cdef inline int _cell(double x, double scale, int n) noexcept nogil:
@@ -86,7 +97,7 @@ cpdef bint runs(
         length = sqrt((control[s, 3, 0] - u0) ** 2 + (control[s, 3, 1] - v0) ** 2)
         if line[s] >= 0:  # the device has only its extent along the line
             length = control[s, 3, 0] - u0
-        k = <int>ceil(length / 1.5)
+        k = <int>ceil(length / SAMPLE)
         k = min(max(k, 1), 4094)
         step = length / k
         limit = enters[s]
@@ -107,9 +118,11 @@ cpdef bint runs(
                 v = dv + t * (v1 + t * (v2 + t * v3)) + aside
                 if line[s] >= 0:
                     aim = v
-                    v += 0.3 * sin(0.09 * u + 0.03 * v) + 0.2 * sin(0.21 * u - 0.05 * v)
+                    v += WAVER[0] * sine_of(WAVER[1] * u + WAVER[2] * v) + WAVER[3] * sine_of(WAVER[4] * u + WAVER[5] * v)
                     if wave > 0:
-                        v += wave * (0.4 * sin(turn * (u + aim / 3)) + 0.15 * sin(turn * (1.7 * u - aim / 5)))
+                        v += wave * (
+                            WAVE[0] * sine_of(turn * (u + aim / WAVE[1])) + WAVE[2] * sine_of(turn * (WAVE[3] * u - aim / WAVE[4]))
+                        )
                 x = u * cosine - v * sine
                 y = u * sine + v * cosine
                 px[i] = x
@@ -118,13 +131,13 @@ cpdef bint runs(
                 d[i] = got - limit
                 total += d[i]
                 if line[s] >= 0:
-                    aim = (<int>way[level[got], line[s]] - 128) / 24.0
+                    aim = (<int>way[level[got], line[s]] - 128) / WAY_STEPS
                     if i == 0:
                         aside = aim
                         px[0] -= aside * sine
                         py[0] += aside * cosine
                     elif d[i] > 0:
-                        aside += 0.2 * (aim - aside)
+                        aside += GIVE * (aim - aside)
             if size[0] + 2 * k + 8 > points.shape[0] or size[1] + k > ends.shape[0]:
                 return False
             every = 3 if line[s] >= 0 else 1
@@ -229,7 +242,7 @@ cdef double _end(
     """
     cdef int i, j
     cdef int off = at + way
-    if d[at] - d[off] > 10:
+    if d[at] - d[off] > STEEP:
         i = max(0, min(k, at - way))
         j = max(0, min(k, off + way))
         t = _edge_between(
@@ -238,4 +251,4 @@ cdef double _end(
         )  # fmt: skip
         if t >= 0:
             return i + (j - i) * t - way * (pen / 2 / step)
-    return at + way * (d[at] / (d[at] - d[off])) - way * (0.4 * pen / step)
+    return at + way * (d[at] / (d[at] - d[off])) - way * (EARLY * pen / step)

@@ -5,7 +5,8 @@ The pixels that a walk reaches are kept as bits, a row of the window around it i
 the steps that are open. A flood of words takes a fifth of the time of a queue of pixels.
 """
 
-from libc.math cimport exp, floor
+from libc.math cimport floor
+from penink_cli.ground._compiled.real cimport exponential
 from penink_cli.reconstruction._compiled.scene cimport side_of_query, side_of_vertex
 
 MAX_REACH = 24  # steps of a walk along each axis; the window is 2 · 24 + 1 wide, and fits a word
@@ -175,7 +176,7 @@ cdef double _least_contaminated(
                         best = max(best, distance[i - reach + r, j - reach + c])
                     else:
                         w = (r - reach) * (r - reach) + (c - reach) * (c - reach)
-                        w = exp(-w / (2 * spread * spread) + 6 * (distance[i - reach + r, j - reach + c] - best))
+                        w = exponential(-w / (2 * spread * spread) + 6 * (distance[i - reach + r, j - reach + c] - best))
                         s += w
                         sv += w * values[i - reach + r, j - reach + c]
                 bits >>= 1
@@ -290,8 +291,8 @@ def resample(
                 ground.flood(pi, pj, steps, seen)
                 for k in range(2 * steps + 1):
                     d = pj - steps + k - (x - 0.5)
-                    across[k] = exp(-d * d / (2 * spread * spread))
+                    across[k] = exponential(-d * d / (2 * spread * spread))
                     d = pi - steps + k - (y - 0.5)
-                    down[k] = exp(-d * d / (2 * spread * spread))
+                    down[k] = exponential(-d * d / (2 * spread * spread))
                 _plane(values, seen, pi, pj, steps, x - 0.5, y - 0.5, across, down, stiffness, &value)
                 out[i, j] = value

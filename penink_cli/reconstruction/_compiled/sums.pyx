@@ -13,14 +13,16 @@ from penink_cli.reconstruction._compiled.lanes cimport (
     columns_at, ease, fill, keep_bytes, lanes_at, less, lowest, more, number, number_at, spread, turn_sets, vectors,
 )
 
+from penink_cli.reconstruction import kernels
+
 
 ctypedef fused stored:
     unsigned char
     unsigned short
     double
 
-cdef double T1 = 0.5  # below this sum of cubic weights the B-spline is blended in
-cdef double T2 = 1e-4  # below this sum of B-spline weights plain convolution is faded in
+cdef double T1 = kernels.T1
+cdef double T2 = kernels.T2
 
 
 cdef inline int rows_of_strip(Lanes* like) noexcept nogil:

@@ -1,8 +1,6 @@
 // drawing.js - strokes from tone: each stroke is drawn wherever the tone exceeds its threshold.
 // The same steps as texture.ps and drawing.ps, which say why.
 
-const PARTS = [0, 0.5, 0.63, 0.75, 1], COVERS = [0, 0.6912, 0.845, 0.943, 0.995];
-const AROUND = 288, ACROSS = 100, LINES = 256, BLOCK = 9, PATCH = 18, GAP = 3, SHORT = 3, DEEP = 24;
 // Blocks around the window that are reconstructed and corrected with it: what lies farther moves no stroke in it visibly.
 const MARGIN = 4;
 
@@ -29,7 +27,7 @@ for (let r = 0; r < 64; r++) {
   let at = home;
   for (let round = 0; round < 3; round++)
     at = at.map((v, i) => v / 2 + ((i ? at[i - 1] : at[n - 1] - ACROSS) + (i < n - 1 ? at[i + 1] : at[0] + ACROSS)) / 4);
-  there.forEach((k, i) => { WAY[64 * k + r] = (clamp(Math.floor(128.5 + 24 * (at[i] - home[i])), 0, 255) - 128) / 24; });
+  there.forEach((k, i) => { WAY[64 * k + r] = (clamp(Math.floor(128.5 + WAY_STEPS * (at[i] - home[i])), 0, 255) - 128) / WAY_STEPS; });
 }
 
 // Strokes lie in one array, so many numbers each: length, the coefficients of cubics in u and v, limit, weight (the ink of a
@@ -40,18 +38,18 @@ const TURN = 4096, SINE = Float32Array.from({length: TURN}, (_, k) => Math.sin(k
 
 // A screen of lines.
 function lines(number, angle, low, high, wave, turn, widens) {
-  let state = 4711 + 97 * number;
-  const random = () => (state = (state * 25173 + 13849) % 65536) >> 8, spread = () => random() / 128 - 1;
+  let state = SEED + SEED_STEP * number;
+  const random = () => (state = (state * CHAIN_FACTOR + CHAIN_STEP) % 65536) >> 8, spread = () => random() / 128 - 1;
   const strokes = [], span = (high - low) / (1 - low);
   const slopes = PARTS.slice(1).map((part, k) => (COVERS[k + 1] - COVERS[k]) / (part - PARTS[k]) * ACROSS / LINES);
   for (let line = 0; line < LINES; line++) {
     const home = (line + 0.5) * ACROSS / LINES, cover = interpolate((RANK[line] + 0.5) / LINES, PARTS, COVERS);
     const limit = 255 * (low + (1 - low) * cover), weight = freshInk(cover, COVERS.slice(1), slopes);
-    let u0 = random() * AROUND / 256;
-    for (let left = AROUND; left > 0;) {
-      let long = 42 + random() / 8;
-      if (left < long + 30) long = left;
-      const a = home + 0.1 * spread(), b = home + 0.1 * spread(), push = 0.45 * spread();
+    let u0 = random() * ALONG / 256;
+    for (let left = ALONG; left > 0;) {
+      let long = LONG + random() / 8;
+      if (left < long + LONG_REST) long = left;
+      const a = home + TILT * spread(), b = home + TILT * spread(), push = 3 * BOW * spread();
       if (cover < span) strokes.push(long, u0, long, 0, 0, a, b - a + push, -push, 0, limit, weight, line);
       u0 += long;
       left -= long;
@@ -59,7 +57,7 @@ function lines(number, angle, low, high, wave, turn, widens) {
   }
   const level = Uint8Array.from({length: 256}, (_, t) =>
     Math.min(63, Math.floor(64 * interpolate(clamp((t / 255 - low) / (1 - low), 0, 1), COVERS, PARTS))));
-  return {angle, strokes: Float64Array.from(strokes), level, tile: [AROUND, ACROSS], whole: false, wave, turn, widens};
+  return {angle, strokes: Float64Array.from(strokes), level, tile: [ALONG, ACROSS], whole: false, wave, turn, widens};
 }
 
 // The same strokes half a tile away: from tone low on they cover what the screen leaves bare.
@@ -150,7 +148,7 @@ class Sheet {
     for (let o = 0; o < strokes.length; o += STROKE) {
       const long = strokes[o], u0 = strokes[o + 1], u1 = strokes[o + 2], u2 = strokes[o + 3], u3 = strokes[o + 4];
       const v0 = strokes[o + 5], v1 = strokes[o + 6], v2 = strokes[o + 7], v3 = strokes[o + 8], limit = strokes[o + 9], line = strokes[o + 11];
-      const steps = clamp(Math.ceil(long / 1.5), 1, 4094), step = long / steps, reach = long / 2 + away, row = 64 * line;
+      const steps = clamp(Math.ceil(long / SAMPLE), 1, 4094), step = long / steps, reach = long / 2 + away, row = 64 * line;
       const p1 = u1 / steps, p2 = u2 / steps / steps, p3 = u3 / steps / steps / steps, q1 = v1 / steps, q2 = v2 / steps / steps, q3 = v3 / steps / steps / steps;
       const lastA = Math.ceil((highU - u0 + long) / tileU), lastB = Math.ceil((highV - v0 + long) / tileV);
       for (let a = Math.floor((lowU - u0 - long) / tileU); a <= lastA; a++) for (let b = Math.floor((lowV - v0 - long) / tileV); b <= lastB; b++) {
@@ -169,8 +167,8 @@ class Sheet {
           let v = dv + i * (q1 + i * (q2 + i * q3)) + aside;
           if (line >= 0) {
             const w = v;
-            v += 0.3 * SINE[(0.09 * u + 0.03 * w) * STEPS & TURN - 1] + 0.2 * SINE[(0.21 * u - 0.05 * w) * STEPS & TURN - 1];
-            if (wave) v += wave * (0.4 * Math.sin(turn * (u + w / 3)) + 0.15 * Math.sin(turn * (1.7 * u - w / 5)));
+            v += WAVER[0] * SINE[(WAVER[1] * u + WAVER[2] * w) * STEPS & TURN - 1] + WAVER[3] * SINE[(WAVER[4] * u + WAVER[5] * w) * STEPS & TURN - 1];
+            if (wave) v += wave * (WAVE[0] * Math.sin(turn * (u + w / WAVE[1])) + WAVE[2] * Math.sin(turn * (WAVE[3] * u - w / WAVE[4])));
           }
           const x = u * c - v * s, y = u * s + v * c;
           let p = (x * perX | 0) - x0, q = (y * perY | 0) - y0;
@@ -181,7 +179,7 @@ class Sheet {
           if (d > 0) above++;
           if (line >= 0) {
             const aim = WAY[row + level[got]];
-            if (!i) { aside = aim; px[0] -= aside * s; py[0] += aside * c; } else if (d > 0) aside += 0.2 * (aim - aside);
+            if (!i) { aside = aim; px[0] -= aside * s; py[0] += aside * c; } else if (d > 0) aside += GIVE * (aim - aside);
           }
         }
         if (whole) { if (total > 0) this.run(0, steps, 0, steps, step, screen, strokes[o + 10], ink, paint); continue; }
@@ -229,11 +227,11 @@ class Sheet {
   // Where a run ends whose last sample is `at`, when `at + way` has too little tone.
   end(at, way, steps, step) {
     const off = at + way, fall = depth[at] - depth[off], {pen} = this.layer;
-    if (fall > 10) {
+    if (fall > STEEP) {
       const i = clamp(at - way, 0, steps), j = clamp(off + way, 0, steps), t = this.crossing(px[i], py[i], px[j], py[j]);
       if (t >= 0) return i + (j - i) * t - way * pen / 2 / step;
     }
-    return at + way * (depth[at] / fall - 0.4 * pen / step);
+    return at + way * (depth[at] / fall - EARLY * pen / step);
   }
   crossing(x, y, u, v) {
     const {picture} = this.layer, E = picture.edges, gx = picture.w / this.width, gy = picture.h / this.height;
@@ -269,7 +267,7 @@ class Sheet {
     };
     for (let j = 0; j < down; j++) soften(j * across, 1, across);
     for (let i = 0; i < across; i++) soften(i, across, down);
-    const taken = this.layer.screens[0].level ? 1 : 0.5;  // of textures that are not lines half of the lack is chance
+    const taken = this.layer.screens[0].level ? 1 : TAKEN_UP;  // of textures that are not lines half of the lack is chance
     lack.forEach((more, k) => { lack[k] = more *= taken; bare[k] = clamp(bare[k] - more / 255, 0, 1); });
     const place = (k, per, first, count) => {
       const at = (k + 0.5) * per - 0.5 - first, low = clamp(Math.floor(at), 0, count - 1);

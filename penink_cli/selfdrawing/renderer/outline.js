@@ -1,8 +1,6 @@
 // outline.js - outline strokes: smooth curves along chains of edges that swell as a hand's do and keep clear of one another.
 // The same steps as outline.ps; penink_cli/blasting/outlines.py says why.
 
-const CLEAR = 1.8, SHORTEST = 4, PIECE = 4, THIN = 0.55, WIDENED = 0.14, TAPER = 14, WAVER = 0.16, WAVER_LONG = 30;
-
 // Outlines of a layer in the part of the picture that matters, in its units: [xs, ys, pen]. Their ink is on the blocks then.
 function outlinesOf({picture, outlines, outlinePen, magnification: unit}, blocks) {
   const {side, bare} = blocks, width = blocks.width / unit, height = blocks.height / unit, found = [], widened = WIDENED / unit, ink = new Float64Array(bare.length);
@@ -24,17 +22,17 @@ function outlinesOf({picture, outlines, outlinePen, magnification: unit}, blocks
       const long = along[to] - along[from];
       if (!free[from] || to === from || (to - from < last && long < SHORTEST * outlinePen)) continue;
       // pieces that the pen's pressure leaves of equal width are one stroke
-      let start = from, wide = 0, state = 4711 + 97 * number, knot = -1, before, index = -1;
-      const random = () => (state = (state * 25173 + 13849) % 65536, (state >> 8) / 128 - 1);
+      let start = from, wide = 0, state = SEED + SEED_STEP * number, knot = -1, before, index = -1;
+      const random = () => (state = (state * CHAIN_FACTOR + CHAIN_STEP) % 65536, (state >> 8) / 128 - 1);
       const put = upto => found.push([px.slice(start, upto + 1), py.slice(start, upto + 1), wide + widened]);
       let after = random();
       for (let k = from + 1; k <= to; k++) {
         if (index !== Math.floor(along[k] / PIECE)) {
           index = Math.floor(along[k] / PIECE);
-          const middle = (index + 0.5) * PIECE, at = middle / WAVER_LONG;
+          const middle = (index + 0.5) * PIECE, at = middle / PRESSURE_LONG;
           while (knot < Math.floor(at)) { before = after; after = random(); knot++; }
           const t = ring ? 1 : clamp(Math.min(middle - along[from], along[to] - middle) / Math.min(TAPER, long / 2), 0, 1);
-          const swell = (THIN + (1 - THIN) * t * (2 - t)) * (1 + WAVER * (before + (after - before) * smooth(at - knot)));
+          const swell = (THIN + (1 - THIN) * t * (2 - t)) * (1 + PRESSURE * (before + (after - before) * smooth(at - knot)));
           const now = pressure ? pen * Math.max(0.3, Math.floor(20 * swell + 0.5) / 20) : pen;
           if (now !== wide) {
             if (wide) put(k - 1);

@@ -68,7 +68,7 @@ function svg(width, window, gain) {
   };
   draw(layers, width, height, window, gain,
     (layer, screen, count) => add(layer, layer.pen * layer.magnification - gain * screen.widens, alongX, alongY, count),
-    (layer, xs, ys, pen) => add(layer, pen * layer.magnification - 1.27 * gain, xs, ys, xs.length));
+    (layer, xs, ys, pen) => add(layer, pen * layer.magnification - MEAN * gain, xs, ys, xs.length));
   return [`<svg xmlns="http://www.w3.org/2000/svg" width="${fixed(x1 - x0)}pt" height="${fixed(y1 - y0)}pt" viewBox="${fixed(x0)} ${fixed(y0)} ${fixed(x1 - x0)} ${fixed(y1 - y0)}">`,
     `<clipPath id="frame"><rect width="${fixed(width)}" height="${fixed(height)}"/></clipPath><g clip-path="url(#frame)" fill="none" stroke="#000" stroke-linecap="round" stroke-linejoin="round">`,
     ...Array.from(paths, ([wide, list]) => `<path stroke-width="${wide}" d="${list.join("")}"/>`)].join("\n") + "</g></svg>\n";

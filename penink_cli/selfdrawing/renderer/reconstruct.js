@@ -281,10 +281,10 @@ class Picture {
       let faith = 1;
       num = plain[cell] - lostInk;
       den = 1 - lost;
-      if (den < 0.5) {
+      if (den < T1) {
         for (let k = 0; k < 16; k++) light[k] = away >> k & 1 ? 1 - losses[k] : 1;
         sums(X.k, Y.k, 4 * p, 4 * q);
-        const share = smooth(den / 0.5), numC = num, denC = den;
+        const share = smooth(den / T1), numC = num, denC = den;
         sums(spline(X.f[p]), spline(Y.f[q]), 0, 0);
         faith = smooth(den * 10000);
         num = share * numC + (1 - share) * num;

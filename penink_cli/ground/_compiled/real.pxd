@@ -1,0 +1,72 @@
+"""Sine, exponential, logarithm and angle of doubles from +, -, *, / and square roots: on all machines the same bits.
+
+A C library's own differ from one to another in the last bit, and one bit can decide where a stroke ends. These are
+within 2 units in the last place of the true values for |x| < 10^5, 700 and for normal numbers; beyond, they are not
+meant to be used.
+"""
+
+from libc.math cimport floor, frexp, ldexp, sqrt
+
+
+cdef inline double sine_of(double x) noexcept nogil:
+    """sin x: x less the nearest multiple of π / 2, taken off in three parts, then the series of sine or cosine."""
+    cdef double n = floor(x * 0.63661977236758134308 + 0.5)
+    cdef double r = ((x - n * 1.5707963267341256) - n * 6.077100506303966e-11) - n * 2.0222662487959506e-21
+    cdef double z = r * r
+    cdef int quarter = <int>(n - 4.0 * floor(n * 0.25))
+    cdef double value
+    if quarter & 1:
+        value = 1.0 - z * (0.5 - z * (1.0 / 24.0 - z * (1.0 / 720.0 - z * (1.0 / 40320.0 - z * (
+            1.0 / 3628800.0 - z * (1.0 / 479001600.0 - z * (1.0 / 87178291200.0 - z / 20922789888000.0)))))))
+    else:
+        value = r - r * z * (1.0 / 6.0 - z * (1.0 / 120.0 - z * (1.0 / 5040.0 - z * (1.0 / 362880.0 - z * (
+            1.0 / 39916800.0 - z * (1.0 / 6227020800.0 - z / 1307674368000.0))))))
+    return -value if quarter & 2 else value
+
+
+cdef inline double exponential(double x) noexcept nogil:
+    """e^x: x less the nearest multiple of ln 2, taken off in two parts, then the series; 0 below -700."""
+    cdef double n, r, total
+    if x < -700.0:
+        return 0.0
+    n = floor(x * 1.44269504088896340736 + 0.5)
+    r = (x - n * 0.693147180369123816490) - n * 1.90821492927058770002e-10
+    total = 1.0 + r * (1.0 + r * (0.5 + r * (1.0 / 6.0 + r * (1.0 / 24.0 + r * (1.0 / 120.0 + r * (1.0 / 720.0 + r * (
+        1.0 / 5040.0 + r * (1.0 / 40320.0 + r * (1.0 / 362880.0 + r * (1.0 / 3628800.0 + r * (1.0 / 39916800.0 + r * (
+            1.0 / 479001600.0 + r / 6227020800.0))))))))))))
+    return ldexp(total, <int>n)
+
+
+cdef inline double logarithm(double x) noexcept nogil:
+    """ln x of a positive number: its exponent times ln 2, and twice the series of artanh of what is left."""
+    cdef int exponent
+    cdef double m = frexp(x, &exponent), s, z, total
+    cdef int k
+    if m < 0.70710678118654752440:
+        m *= 2.0
+        exponent -= 1
+    s = (m - 1.0) / (m + 1.0)
+    z = s * s
+    total = 1.0 / 21.0
+    for k in range(19, 0, -2):
+        total = total * z + 1.0 / k
+    return exponent * 0.693147180369123816490 + (2.0 * s * total + exponent * 1.90821492927058770002e-10)
+
+
+cdef inline double angle_of(double x, double y) noexcept nogil:
+    """The angle of the direction (x, y) from the x axis towards y, -π … π; 0 for none.
+
+    Three times halved, tan(θ / 2) = y / (x + r), so that a short series does; a left half plane is turned first.
+    """
+    cdef double r = sqrt(x * x + y * y), t, z, angle
+    if r == 0.0:
+        return 0.0
+    t = y / ((x if x >= 0.0 else -x) + r)
+    t = t / (1.0 + sqrt(1.0 + t * t))
+    t = t / (1.0 + sqrt(1.0 + t * t))
+    z = t * t
+    angle = 8.0 * t * (1.0 - z * (1.0 / 3.0 - z * (1.0 / 5.0 - z * (1.0 / 7.0 - z * (1.0 / 9.0 - z * (
+        1.0 / 11.0 - z * (1.0 / 13.0 - z * (1.0 / 15.0 - z * (1.0 / 17.0 - z * (1.0 / 19.0 - z / 21.0))))))))))
+    if x >= 0.0:
+        return angle
+    return (3.14159265358979323846 if y >= 0.0 else -3.14159265358979323846) - angle
