@@ -22,7 +22,7 @@ FLOORS = (
     ("lines",),
     ("blasting",),
     ("outputs", "selfdrawing"),
-    ("illustration",),
+    ("illustration", "measuring"),
     ("options",),
     ("main",),
     ("manual",),

@@ -152,6 +152,17 @@ def read_colours(path: str | None, max_pixels: int) -> GreyImage | ColourImage:
         return photo.read_colours(stream, streams.source_name(path), photo_limit(max_pixels), photo_choices(), warn)
 
 
+def read_image_or_strokes(path: str | None, max_pixels: int) -> GreyImage | Strokes:
+    """What a drawing is compared with: strokes, or the grey of a PGM image or a photograph."""
+    from penink_cli.formats import photo, strokes
+
+    source = streams.source_name(path)
+    with streams.reading(path) as stream:
+        if stream.peek(1)[:1] == b"{":  # type: ignore[attr-defined]
+            return strokes.read(stream, source)
+        return photo.read_grey(stream, source, photo_limit(max_pixels), photo_choices(), warn)
+
+
 def read_edges(path: str | None, max_pixels: int = 0) -> EdgeList | None:
     """A valid arrangement of discontinuity edges; None where no file is given. max_pixels allows more than 80 MB."""
     if path is None:

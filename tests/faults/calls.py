@@ -50,6 +50,8 @@ CALLS = {
     "draw": Call("photo.png", ("--width", "0.35in", "--texture", "crosshatch")),
     "pack": Call("photo.illustration.json"),
     "to-html": Call("photo.illustration.json"),
+    "measure": Call("photo.strokes.jsonl", ("--against", "samples.pgm")),
+    "compare": Call("photo.strokes.jsonl", ("photo.strokes.jsonl",)),
     "texture": Call(None, ("make", "brick", "--seed", "1")),
 }
 
