@@ -20,7 +20,14 @@ from penink_cli.options.common import (
     verbose_option,
     warn,
 )
-from penink_cli.options.inputs import only_one_standard_input, read_directions, read_edges, read_grey, read_lines
+from penink_cli.options.inputs import (
+    only_one_standard_input,
+    read_directions,
+    read_edges,
+    read_grey,
+    read_lines,
+    read_to_blast,
+)
 from penink_cli.options.layers import read_layers
 from penink_cli.options.progress import progress
 from penink_cli.options.sheet import check_sheet
@@ -129,7 +136,7 @@ def blast(
     only_one_standard_input(file, edges_file, directions_file, lines_file, *ink_files, piped_texture)
     texture = find_texture(texture_name)
     edges = read_edges(edges_file, max_pixels)
-    image = read_grey(file, max_pixels)
+    image = read_grey(file, max_pixels) if width is None else read_to_blast(file, max_pixels)
     rows, columns = image.values.shape
     wide, high = (columns, rows) if edges is None else (edges.width, edges.height)
     directions = read_directions(directions_file, wide, high, max_pixels)

@@ -11,6 +11,7 @@ raster. After that character every byte of P5 is raster, whatever it looks like.
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any, BinaryIO
 
 import numpy as np
@@ -47,12 +48,53 @@ def read(stream: BinaryIO, source: str, max_pixels: int) -> GreyImage:
     return GreyImage(values, maxval)
 
 
+def read_at_most(stream: BinaryIO, source: str, max_pixels: int, most: int) -> GreyImage:
+    """The first image of a PGM stream; of more than ``most`` pixels a smaller view, each pixel the mean of k × k.
+
+    Memory grows with ``most``, not with the image. Raises as `read` does, LimitError beyond max_pixels.
+    """
+    magic = stream.read(2)
+    if magic != b"P5":
+        return read(_Again(magic, stream), source, most)  # type: ignore[arg-type]
+    width, height, maxval = header_numbers(stream, source, 3)
+    _check_maxval(maxval, source)
+    check_size(width, height, max_pixels, source)
+    if width * height <= most:
+        return GreyImage(binary(stream, source, width * height, maxval, width).reshape(height, width), maxval)
+    k = math.isqrt((width * height - 1) // most) + 1
+    columns = np.arange(0, width, k)
+    across = np.minimum(k, width - columns)
+    values = np.empty((-(-height // k), len(columns)), np.uint8 if maxval < 256 else np.uint16)
+    for i in range(len(values)):
+        rows = min(k, height - i * k)
+        band = binary(stream, source, rows * width, maxval, width).reshape(rows, width)
+        sums = np.add.reduceat(band.sum(axis=0, dtype=np.int64), columns)
+        values[i] = (2 * sums + rows * across) // (2 * rows * across)
+    return GreyImage(values, maxval)
+
+
+class _Again:
+    """A stream of which some bytes have been read already."""
+
+    def __init__(self, start: bytes, stream: BinaryIO):
+        self._start, self._stream = start, stream
+
+    def read(self, size: int) -> bytes:
+        start, self._start = self._start[:size], self._start[size:]
+        return start or self._stream.read(size)
+
+    def read1(self, size: int) -> bytes:
+        return self._stream.read1(size)  # type: ignore[attr-defined]
+
+    def readinto(self, buffer: Any) -> int:
+        return self._stream.readinto(buffer)  # type: ignore[attr-defined]
+
+
 def read_raster(stream: BinaryIO, source: str, max_pixels: int, magic: bytes) -> tuple[Values, int]:
     """What follows the magic number of P2, P5 (values (h, w)) or P3, P6 (h, w, 3), and maxval."""
     channels = 3 if magic in (b"P3", b"P6") else 1
     width, height, maxval = header_numbers(stream, source, 3)
-    if not 1 <= maxval <= 65535:
-        raise FormatError(f"maxval is {maxval}; 1 to 65535 are allowed", source)
+    _check_maxval(maxval, source)
     check_size(width, height, max_pixels, source)
     count = width * height * channels
     try:
@@ -105,6 +147,11 @@ def header_numbers(stream: BinaryIO, source: str, count: int) -> list[int]:
             found = _shown(byte + stream.read(59))
             raise FormatError(f"{place[len(numbers)]}: a decimal number is expected, found {found}", source)
     raise FormatError(f"the header is longer than {MAX_HEADER} bytes", source)
+
+
+def _check_maxval(maxval: int, source: str) -> None:
+    if not 1 <= maxval <= 65535:
+        raise FormatError(f"maxval is {maxval}; 1 to 65535 are allowed", source)
 
 
 def _checked(numbers: list[int], source: str) -> list[int]:

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 F = TypeVar("F", bound=Callable[..., Any])
 
 PHOTO_PIXELS = 250_000_000  # of a photograph and of samples as large: telephones take more than 100 megapixels
+ENLARGED_PIXELS = 4 * PHOTO_PIXELS  # what the chain makes of such a photograph
 ALPHA = "alpha"
 NAMED = {"white": (255, 255, 255), "black": (0, 0, 0), "grey": (128, 128, 128)}
 _OPTIONS = ("background", "profile", "strict", "lenient")
@@ -134,6 +135,20 @@ def read_grey(path: str | None, max_pixels: int) -> GreyImage:
 
     with streams.reading(path) as stream:
         return pgm.read(stream, streams.source_name(path), max_pixels)
+
+
+def read_to_blast(path: str | None, max_pixels: int) -> GreyImage:
+    """Grey samples that need not be finer than paper shows: of an image of very many pixels a smaller view.
+
+    So nothing that `enlarge` makes of a photograph is refused, unless --max-pixels is said.
+    """
+    from penink_cli.formats import pgm
+
+    context = click.get_current_context()
+    chosen = context.get_parameter_source("max_pixels") is not ParameterSource.DEFAULT
+    with streams.reading(path) as stream:
+        limit = max_pixels if chosen else ENLARGED_PIXELS
+        return pgm.read_at_most(stream, streams.source_name(path), limit, max_pixels)
 
 
 def read_photo(path: str | None, max_pixels: int) -> GreyImage:

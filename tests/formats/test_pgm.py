@@ -178,3 +178,23 @@ def test_every_prefix_is_refused(image, cut):
     data = written(pgm.write, image)
     with pytest.raises(FormatError):
         read(data[: min(cut, len(data) - 1)])
+
+
+@pytest.mark.parametrize("maxval", [255, 1000])
+@pytest.mark.parametrize(("width", "height"), [(7, 5), (8, 4), (1, 90), (90, 1), (30, 3)])
+def test_a_large_image_is_read_as_means(width, height, maxval):
+    values = np.random.default_rng(5).integers(0, maxval + 1, (height, width))
+    data = b"P5 %d %d %d\n" % (width, height, maxval) + values.astype(">u2" if maxval > 255 else np.uint8).tobytes()
+    found = pgm.read_at_most(io.BytesIO(data), "x", 1000, 12).values
+    k = next(k for k in range(1, 99) if width * height <= 12 * k * k)
+    assert found.shape == (-(-height // k), -(-width // k)) and k > 1
+    for (i, j), value in np.ndenumerate(found):
+        part = values[i * k : (i + 1) * k, j * k : (j + 1) * k]
+        assert value == int(np.floor(part.mean() + 0.5 + 1e-9))
+    assert np.array_equal(pgm.read_at_most(io.BytesIO(data), "x", 1000, 1000).values, values)
+    with pytest.raises(LimitError, match="at most 11 are allowed"):
+        pgm.read_at_most(io.BytesIO(data), "x", 11, 5)
+    with pytest.raises(FormatError, match="truncated"):
+        pgm.read_at_most(io.BytesIO(data[:-1]), "x", 1000, 12)
+    plain = b"P2 1 2 9\n1 2\n"
+    assert pgm.read_at_most(io.BytesIO(plain), "x", 1000, 12).values.tolist() == [[1], [2]]
