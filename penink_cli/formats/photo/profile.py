@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from penink_cli.formats._compiled import colours as _colours
 from penink_cli.formats.photo.powers import power
 from penink_cli.ground.model import Floats
 
@@ -56,6 +57,8 @@ class Profile:
         stored = np.arange(maxval + 1) / maxval
         tables = tuple(np.clip(curve(stored), 0.0, 1.0) for curve in self.curves)
         depth = np.uint8 if maxval < 256 else np.uint16
+        light = np.array((tables * 3)[:3])
+        matrix = np.array(self._neutral())
         coding = to_srgb(np.arange(STEPS + 1) / STEPS) * maxval
 
         def coded(light: Floats) -> npt.NDArray[Any]:
@@ -68,8 +71,10 @@ class Profile:
         def convert(band: npt.NDArray[Any]) -> npt.NDArray[Any]:
             if band.shape[2] == 1:
                 return table[band]
-            light = [(tables[c] if len(tables) == 3 else tables[0])[band[..., c]] for c in range(3)]
-            return np.stack([coded(a * light[0] + b * light[1] + c * light[2]) for a, b, c in self._neutral()], axis=2)
+            flat = np.ascontiguousarray(band).reshape(-1, 3)
+            shown = np.empty_like(flat)
+            _colours.convert(flat, light, matrix, coding, shown)
+            return shown.reshape(band.shape)
 
         if len(tables) == 1:
             table = coded(tables[0])
