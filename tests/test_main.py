@@ -6,11 +6,14 @@ import importlib
 import os
 import subprocess
 import sys
+import threading
 import time
 
 import click
+import numpy as np
 import pytest
 
+from penink_cli import main
 from penink_cli.ground import errors, units
 from penink_cli.main import PARTS, SUBCOMMANDS
 from penink_cli.options import common as options
@@ -202,6 +205,23 @@ def test_a_sheet_is_limited_by_its_area_and_the_refusal_is_quick(penink, tmp_pat
     done = penink("blast", "--width", "1in", "--max-pixels", "1000", tall)
     assert done.returncode == 1 and b"at most 1000 are allowed (--max-pixels)" in done.stderr
     assert time.monotonic() - began < 20  # two starts of the interpreter, on a busy machine
+
+
+def test_threads_are_as_many_as_asked_for_everywhere(tmp_path, monkeypatch):
+    """Also in stages that take no number: one thread starts no other."""
+    photo = tmp_path / "photo.pgm"
+    y, x = np.mgrid[:200, :200]
+    photo.write_bytes(b"P5 200 200 255\n" + ((np.hypot(x - 99, y - 99) % 40 < 20) * 255).astype(np.uint8).tobytes())
+    started = []
+    start = threading.Thread.start
+    monkeypatch.setattr(threading.Thread, "start", lambda self: (started.append(self), start(self)))
+    for ending in ("png", "ps"):
+        output = str(tmp_path / f"o.{ending}")
+        main._run(["draw", "--quiet", "--threads", "1", "--width", "1in", str(photo), "-o", output])
+    assert (tmp_path / "o.png").exists() and not started
+    from penink_cli.ground import threads
+
+    assert threads.limit(None) is None
 
 
 def test_a_drawing_too_thin_for_strokes_is_told(penink, tmp_path):

@@ -10,12 +10,22 @@ from typing import TypeVar
 
 T = TypeVar("T")
 
+_most: list[int | None] = [None]  # threads that may be used where nobody says how many
+
 
 def count(threads: int | None) -> int:
     """How many threads to use: as many as asked for, else one for each processor this process may use."""
     if threads is not None:
         return max(1, threads)
+    if _most[0] is not None:
+        return _most[0]
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def limit(threads: int | None) -> int | None:
+    """Let `count` say so many where it is not told a number, one a processor for None; what it said before."""
+    before, _most[0] = _most[0], threads
+    return before
 
 
 def share(tasks: Sequence[Callable[[], object]], threads: int) -> None:

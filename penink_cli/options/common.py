@@ -244,8 +244,19 @@ def directions_option(required: bool) -> Callable[[F], F]:
     )
 
 
+def _limit_threads(ctx: click.Context, _: click.Parameter, threads: int | None) -> int | None:
+    """Tell all that runs within this command, whether it takes a number of threads or not."""
+    if threads is not None:
+        from penink_cli.ground import threads as threading
+
+        before = threading.limit(threads)
+        ctx.call_on_close(lambda: threading.limit(before) and None)
+    return threads
+
+
 threads_option = click.option(
     "--threads",
+    callback=_limit_threads,
     type=click.IntRange(1, 256),
     metavar="N",
     help="Threads to use; the bytes are the same for any number.  [default: one a processor]",
