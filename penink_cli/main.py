@@ -50,7 +50,7 @@ SUBCOMMANDS = {
     "to-pdf": ("to_pdf", "Write strokes as a PDF page of vector paths."),
     "to-pgm": ("to_pgm", "Draw strokes into a grey image, by the area that ink covers."),
     "to-png": ("to_png", "Draw strokes into a PNG image, by the area that ink covers."),
-    "measure": ("measure", "Measure a drawing: its tone against what it is to show, and how its strokes lie."),
+    "measure": ("measure", "Measure a drawing: its tone against what it is to show, how its strokes lie."),
     "compare": ("compare", "Say whether two drawings, or two pictures, are the same, to a tolerance."),
     "completion": ("completion", "Print what makes a shell complete penink's words."),
 }
