@@ -5,6 +5,7 @@
 #   make figures    the paper's figures with our own pictures: samples/out/figures.pdf, .png and table1.md
 #   make bench      the measurements     make dist    wheel and source distribution
 #   make check-dist both, installed in an empty environment
+#   make check-pythons  the same bytes under every CPython that this machine has (PYTHONS=…)
 #   make check-roots  `make` and `make test` on an otherwise empty Debian 12 and 13 (ROOTS=bookworm)
 #   make fuzz       every reader against anything (SECONDS=600)
 #   make manual     the man pages and completion, from the help texts
@@ -21,7 +22,7 @@ INSTALLED := $(VENV)/.installed
 KERNELS   := $(shell find penink_cli -path '*/_compiled/*.pyx')
 BENCHES   := $(patsubst tests/benchmarks/%.py,tests.benchmarks.%,$(filter-out %/__init__.py %/_%,$(wildcard tests/benchmarks/*.py)))
 
-.PHONY: all install samples figures test lint bench fuzz torture manual dist check-dist check-roots clean needs quick
+.PHONY: all install samples figures test lint bench fuzz torture manual dist check-dist check-pythons check-roots clean needs quick
 .DELETE_ON_ERROR:
 
 all: samples
@@ -81,6 +82,10 @@ dist: $(INSTALLED)
 
 check-dist: needs
 	.ci/check-dist $(PYTHON)
+
+# The nine samples and every texture under each CPython that is to be had, byte for byte: some five minutes each.
+check-pythons:
+	.ci/check-pythons $(PYTHONS)
 
 # `make` and `make test` in new roots of Debian 12 and 13 that hold nothing but python3, gcc, make and git: an hour, as root.
 check-roots:
