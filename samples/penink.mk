@@ -31,7 +31,8 @@ TO_SVG  ?=
 TO_PDF  ?=
 PREVIEW_DPI ?= 150
 
-PENINK_PHOTOS := png jpg jpeg tif tiff webp pgm ppm PNG JPG JPEG TIF TIFF WEBP PGM PPM
+PENINK_PHOTOS := png jpg jpeg tif tiff webp avif heic gif bmp pgm ppm pbm pam
+PENINK_PHOTOS += PNG JPG JPEG TIF TIFF WEBP AVIF HEIC GIF BMP PGM PPM PBM PAM
 penink-photos = $(call penink-checked,$(or $(1),.),$(filter-out %.preview.png %.samples.pgm %.reduced.pgm %.grey.pgm,\
                   $(wildcard $(addprefix $(or $(1),.)/*.,$(PENINK_PHOTOS)))))
 
