@@ -2,6 +2,7 @@
 #
 #   make            virtual environment, install, samples/out/*.ps and *.preview.png
 #   make test       the tests            make lint    ruff, mypy, cython-lint
+#   make quick      the tests that neither draw with Ghostscript or Chromium nor take long
 #   make figures    the paper's figures with our own pictures: samples/out/figures.pdf, .png and table1.md
 #   make bench      the measurements     make dist    wheel and source distribution
 #   make check-dist both, installed in an empty environment

@@ -53,17 +53,35 @@ def _watch(event: str, arguments: tuple[object, ...]) -> None:
     test = os.environ.get("PYTEST_CURRENT_TEST", "").rsplit(" (", 1)[0]
     if name.startswith(RENDERERS) and test in _quick:
         _quick.discard(test)
-        pytest.fail(f"{test} starts {name}: mark it, or its module, with pytest.mark.rendered")
+        pytest.fail(f"{test} starts {name}: put it among RENDERED in tests/conftest.py")
 
 
 _quick: set[str] = set()  # tests of the quick tier that are not marked `rendered`
 sys.addaudithook(_watch)
 
 
+# What `make quick` leaves out, by the beginning of a test's name: what starts Ghostscript, Chromium or another program
+# that draws, and what takes long. A test of the quick tier that starts one of these programs fails.
+RENDERED = (
+    "tests/selfdrawing/", "tests/blasting/test_blast.py", "tests/arrangement/test_detection.py", "tests/test_chain.py",
+    "tests/illustration/test_drawing.py", "tests/outputs/test_postscript.py", "tests/outputs/test_vector.py",
+    "tests/outputs/test_raster.py", "tests/outputs/test_swelling.py", "tests/outputs/test_device.py",
+    "tests/test_make.py::test_nothing_in_a_name_is_run",
+)  # fmt: skip
+SLOW = (
+    "tests/faults/test_degenerate.py", "tests/faults/test_environment.py", "tests/faults/test_signals.py",
+    "tests/faults/test_shortage.py", "tests/formats/test_found.py", "tests/test_make.py",
+    "tests/test_readme.py::test_every_block",
+    "tests/outputs/test_manual.py::test_examples_run", "tests/textures/", "tests/directions/test_detection.py",
+)  # fmt: skip
+
+
 def pytest_itemcollected(item: pytest.Item) -> None:
-    """Mark what draws with Ghostscript by a fixture; in the quick tier, remember what may not."""
-    if "ghostscript" in getattr(item, "fixturenames", ()):
+    """Mark what the quick tier leaves out, and remember what is in it."""
+    if "ghostscript" in getattr(item, "fixturenames", ()) or item.nodeid.startswith(RENDERED):
         item.add_marker(pytest.mark.rendered)
+    if item.nodeid.startswith(SLOW):
+        item.add_marker(pytest.mark.slow)
     if "not rendered" in item.config.option.markexpr and not any(item.iter_markers("rendered")):
         _quick.add(item.nodeid)
 

@@ -1,17 +1,22 @@
-"""The README's commands are such as the program has, its manifest one that is read."""
+"""The README's commands are such as the program has, its manifest one that is read, and its blocks run as pasted."""
 
 from __future__ import annotations
 
 import importlib
 import json
+import os
 import re
+import subprocess
+import sys
 
 import click
 import jsonschema
+import numpy as np
 import pytest
+from PIL import Image
 
 from penink_cli.main import SUBCOMMANDS
-from tests.conftest import ROOT
+from tests.conftest import ROOT, environment
 
 README = (ROOT / "README.md").read_text("utf-8")
 CODE = "\n".join(re.findall(r"^    .*|`[^`\n]+`", README, re.M))
@@ -40,3 +45,57 @@ def test_the_makefile_lines_and_files_are_there():
     for path in re.findall(r"\((samples/[^)]*|penink_cli/[^)]*)\)", README):
         assert (ROOT / path).exists(), path
     assert "penink-photos =" in (ROOT / "samples/penink.mk").read_text()
+
+
+def blocks() -> list[str]:
+    """What is to be pasted, in order: indented blocks, and commands in a sentence that name a file."""
+    found = []
+    for match in re.finditer(r"((?:^    .*\n|^ *\n(?=    ))+)|`(penink [^`\n]+)`", README, re.M):
+        if match[1]:
+            found.append("\n".join(line[4:] for line in match[1].split("\n")).strip("\n"))
+        elif re.search(r" [\w-]+\.[a-z]+( |$)", match[2]):
+            found.append(match[2])
+    return found
+
+
+# Not run here: make and apt-get, which `make check-roots` runs, and Snakemake, which the tests do not install.
+LEFT_OUT = re.compile(r"make |apt-get |snakemake |photo ──")
+PHOTO = os.environ.get("README_PHOTO", "600x400")  # 3000x2000: as large as a telephone's, some minutes
+
+
+def test_every_block_runs_as_pasted_in_order(tmp_path):
+    programs = tmp_path / "bin"
+    programs.mkdir()
+    for name, script in {"penink": f'exec "{sys.executable}" -m penink_cli "$@"', "vpype": "cat > photo.hpgl"}.items():
+        (programs / name).write_text(f"#!/bin/sh\n{script}\n")
+        (programs / name).chmod(0o755)
+    folder = tmp_path / "place"
+    (folder / "holiday").mkdir(parents=True)
+    (folder / "penink").symlink_to(ROOT)
+    width, height = map(int, PHOTO.split("x"))
+    y, x = np.mgrid[:height, :width] / height
+    disc = np.hypot(x - 0.6, y - 0.5) < 0.3
+    grey = np.where(disc, 60 + 100 * y, 250 - 60 * x) + np.random.default_rng(0).normal(0, 2, x.shape)
+    Image.fromarray(grey.clip(0, 255).astype(np.uint8)).save(folder / "photo.png")
+    Image.open(folder / "photo.png").resize((96, 64)).save(folder / "holiday/portrait.png")
+    Image.open(folder / "photo.png").resize((96, 64)).save(folder / "holiday/beach.jpg")
+    env = environment(PATH=f"{programs}:{os.environ['PATH']}", HOME=str(tmp_path), MAKEFLAGS="")
+    ran = 0
+    for block in blocks():
+        if LEFT_OUT.match(block):
+            continue
+        if block.startswith("{"):
+            (folder / "photo.illustration.json").write_text(block)
+            continue
+        if block.startswith("include "):
+            (folder / "Makefile").write_text(block + "\n")
+            block = "make -j4"
+        done = subprocess.run(
+            ["bash", "-e", "-o", "pipefail", "-c", block], cwd=folder, env=env, capture_output=True, check=False
+        )
+        assert done.returncode == 0 and b"warning" not in done.stderr, (block, done.stderr.decode())
+        ran += 1
+    assert ran > 10
+    for name in ("photo.ps", "photo.svg", "photo.eps", "photo.html", "poster.ps", "plot.svg", "photo.hpgl"):
+        assert (folder / name).stat().st_size > 1000, name
+    assert {"beach.ps", "portrait.ps"} <= set(os.listdir(folder / "holiday"))
