@@ -37,8 +37,9 @@ RAGGED = (0.004, 0.03)
 FILLER_PT, FILLER_STEP_PT, STRAIGHT_ON = (10.0, 18.0), 2.0, 0.8
 #: Places at which each stroke looks at what lies under it.
 SAMPLES = 5
-#: A hand's bow is no greater than this part of the distance of its lines.
-BOW = 0.14
+#: The hand's variation: of a stroke's place, and its bow at the most, in parts of the distance of its lines. Less than
+#: on straight lines, for these are not quite as even without it.
+WAVER, BOW = 0.06, 0.14
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,8 +89,28 @@ class Form:
 
     def turned(self, i: int) -> tuple[Cells, Cells]:
         """Cosine and sine of twice the angle at which layer i's strokes run, (rows, columns)."""
+        layer = self.layers[i]
         c, s = (np.float32(part) for part in direction(2.0 * turn_of(self.layers, i)))
+        if layer.wave_pt > 0:
+            # as steep as a wave so high and long is where it is steepest, one way or the other
+            slope = np.float32(4 * layer.wave_pt / layer.wave_length_pt) * self._noise(layer.wave_length_pt / 2)
+            length = 1 + slope * slope
+            wave_c, wave_s = (1 - slope * slope) / length, 2 * slope / length
+            c, s = c * wave_c - s * wave_s, s * wave_c + c * wave_s
         return self._cos2 * c - self._sin2 * s, self._sin2 * c + self._cos2 * s
+
+    def _noise(self, cell_pt: float) -> Cells:
+        """Smooth noise from -1 to 1 (rows, columns): values drawn at the corners of a grid, blended by cubics."""
+        table = np.random.default_rng(6).uniform(-1.0, 1.0, (64, 64)).astype(np.float32)
+        blends = []
+        for side, count in ((self.sheet.height, self.sheet.rows), (self.sheet.width, self.sheet.columns)):
+            at = (np.arange(count) + 0.5) * (side / count / cell_pt)
+            k = np.floor(at).astype(np.int64)
+            f = (at - k).astype(np.float32)
+            blends.append((k & 63, (k + 1) & 63, f * f * (3 - 2 * f)))
+        (j, below, g), (i, after, f) = blends
+        rows = table[j] * (1 - g)[:, None] + table[below] * g[:, None]
+        return rows[:, i] * (1 - f) + rows[:, after] * f
 
     def normals(self, i: int) -> tuple[Plane, Plane]:
         """The unit normal at each node, either way, of layer i's strokes."""
@@ -238,7 +259,7 @@ class Form:
         rng = np.random.default_rng([seed, 2])
         drawn = parts.span[:, 1] - parts.span[:, 0]
         hand = rng.normal(0, 1, (n, 3))
-        waver = sweep.WAVER * np.minimum(apart, 8.0)
+        waver = WAVER * np.minimum(apart, 8.0)
         hand[:, 0] *= waver
         hand[:, 1] *= 0.7 * waver
         hand[:, 2] *= np.minimum(sweep.BOW_PT, BOW * apart) * np.minimum(drawn / 40.0, 1.0)

@@ -9,6 +9,7 @@ import pytest
 
 from penink_cli.blasting.blast import blast
 from penink_cli.blasting.shares import BLACK, shares
+from penink_cli.formats import directions as directions_format
 from penink_cli.ground.model import Directions, EdgeList, Floats, HatchLayer, Strokes
 from penink_cli.options.textures import find_texture
 from tests.blasting import measures
@@ -130,3 +131,45 @@ def test_lines_of_a_layer_with_a_spacing_are_no_closer() -> None:
     strokes = blast(np.full((8, 8), 0.6), 216, 216, None, replace(texture, layers=(layer,)), directions=field(waves))
     ink = (measures.lengths(strokes)).sum() / 216**2
     assert ink < 1.05 / 3.0
+
+
+def test_grain_wanders_about_the_field() -> None:
+    wanted = np.full((8, 8), 0.3)
+    off = {
+        name: off_angle(blast(wanted, 216, 216, None, find_texture(name), directions=field(waves)), waves)
+        for name in ("parallel", "grain")
+    }
+    assert 2 * off["parallel"].mean() < off["grain"].mean() < 20
+
+
+def test_ray_gaps_tell_even_lines_from_uneven_ones() -> None:
+    """The measure itself: rings 3 pt apart, and the same with every fifth one moved."""
+
+    def rings(radii) -> Strokes:
+        turn = np.linspace(0, 2 * np.pi, 121)[:, None] + np.array([0.0, 1 / 3, 2 / 3]) * (2 * np.pi / 120)
+        angle = turn.ravel()[: 3 * 120 + 1]
+        points = [150 + r * np.column_stack([np.cos(angle), np.sin(angle)]) for r in radii]
+        return Strokes(300, 300, np.concatenate(points), np.arange(len(radii) + 1) * 361, np.full(len(radii), 0.4))
+
+    radii = np.arange(30.0, 120.0, 3.0)
+    even = measures.ray_gaps(rings(radii))
+    assert even["mean"] == pytest.approx(3, abs=0.02) and even["cv"] < 0.02 and even["gaping"] == 0
+    uneven = measures.ray_gaps(rings(radii + np.where(np.arange(30) % 5 == 0, 2.2, 0.0)))
+    assert uneven["cv"] > 0.3 and uneven["doubled"] > 0.1
+
+
+def test_the_command_takes_a_field_and_says_where_it_is_of_no_use(penink, tmp_path) -> None:
+    grey = tmp_path / "grey.pgm"
+    grey.write_bytes(b"P5 24 18 255\n" + bytes(range(0, 216)) * 2)
+    with (tmp_path / "d.pgm").open("wb") as out:
+        directions_format.write(out, field(waves, 18))
+    square = penink("blast", "--directions", tmp_path / "d.pgm", "--width", "1in", grey)
+    assert square.returncode == 1 and b"another shape" in square.stderr and not square.stdout
+    with (tmp_path / "d.pgm").open("wb") as out:
+        found = field(waves, 24)
+        directions_format.write(out, Directions(found.cos2[:18], found.sin2[:18], found.confidence[:18]))
+    plain = penink("blast", "--width", "1in", grey)
+    along = penink("blast", "--directions", tmp_path / "d.pgm", "--width", "1in", grey)
+    assert along.returncode == 0 and along.stdout != plain.stdout and not along.stderr
+    dots = penink("blast", "-t", "stipple", "--directions", tmp_path / "d.pgm", "--width", "1in", grey)
+    assert dots.returncode == 0 and b"stipple is not drawn along directions" in dots.stderr

@@ -251,9 +251,12 @@ cdef inline void _at(
 
 cdef inline void _by_hand(
     const double *p, Py_ssize_t steps, double step, double s0, double s1, const double *hand, double u,
-    double *x, double *y
+    double *x, double *y, double *nx, double *ny
 ) noexcept nogil:
-    """The point at u, 0 … 1, of the stroke from s0 to s1: beside the line by shift, tilt and bow of the hand."""
+    """The point at u, 0 … 1, of the stroke from s0 to s1: beside the line by shift, tilt and bow of the hand.
+
+    (nx, ny): the line's unit normal there.
+    """
     cdef double s = s0 + u * (s1 - s0)
     cdef double aside = hand[0] + hand[1] * (2.0 * u - 1.0) + hand[2] * (4.0 * u * (1.0 - u) - 0.6666666666666666)
     cdef double x0, y0, x1, y1, d
@@ -262,9 +265,11 @@ cdef inline void _by_hand(
     _at(p, steps, step, s, x, y)
     x1 = x1 - x0
     y1 = y1 - y0
-    d = aside / (sqrt(x1 * x1 + y1 * y1) + 1e-12)
-    x[0] = x[0] - d * y1
-    y[0] = y[0] + d * x1
+    d = 1.0 / (sqrt(x1 * x1 + y1 * y1) + 1e-12)
+    nx[0] = -d * y1
+    ny[0] = d * x1
+    x[0] = x[0] + aside * nx[0]
+    y[0] = y[0] + aside * ny[0]
 
 
 cdef double _fit(
@@ -272,15 +277,15 @@ cdef double _fit(
 ) noexcept nogil:
     """Control points (3 k + 1, 2) of the stroke as k cubics, through it at every third; returns how far they are off."""
     cdef Py_ssize_t m, t
-    cdef double q1x, q1y, q2x, q2y, x, y, u, v, w, dx, dy
+    cdef double q1x, q1y, q2x, q2y, x, y, u, v, w, dx, dy, nx, ny
     cdef double worst = 0.0
     cdef double *c
     for m in range(k + 1):
-        _by_hand(p, steps, step, s0, s1, hand, (<double>m) / k, &out[6 * m], &out[6 * m + 1])
+        _by_hand(p, steps, step, s0, s1, hand, (<double>m) / k, &out[6 * m], &out[6 * m + 1], &nx, &ny)
     for m in range(k):
         c = out + 6 * m
-        _by_hand(p, steps, step, s0, s1, hand, (m + 0.3333333333333333) / k, &q1x, &q1y)
-        _by_hand(p, steps, step, s0, s1, hand, (m + 0.6666666666666666) / k, &q2x, &q2y)
+        _by_hand(p, steps, step, s0, s1, hand, (m + 0.3333333333333333) / k, &q1x, &q1y, &nx, &ny)
+        _by_hand(p, steps, step, s0, s1, hand, (m + 0.6666666666666666) / k, &q2x, &q2y, &nx, &ny)
         c[2] = (18.0 * q1x - 5.0 * c[0] - 9.0 * q2x + 2.0 * c[6]) / 6.0
         c[3] = (18.0 * q1y - 5.0 * c[1] - 9.0 * q2y + 2.0 * c[7]) / 6.0
         c[4] = (18.0 * q2x - 5.0 * c[6] - 9.0 * q1x + 2.0 * c[0]) / 6.0
@@ -299,13 +304,14 @@ cdef double _fit(
         for t in range(3):
             u = 0.16666666666666666 + t * 0.3333333333333333
             v = 1.0 - u
-            _by_hand(p, steps, step, s0, s1, hand, (m + u) / k, &x, &y)
+            _by_hand(p, steps, step, s0, s1, hand, (m + u) / k, &x, &y, &nx, &ny)
             w = v * v * v
             dx = w * c[0] + 3.0 * u * v * (v * c[2] + u * c[4]) + u * u * u * c[6] - x
             dy = w * c[1] + 3.0 * u * v * (v * c[3] + u * c[5]) + u * u * u * c[7] - y
-            w = dx * dx + dy * dy
+            # only aside counts: along the line nobody sees it
+            w = fabs(dx * nx + dy * ny)
             worst = w if w > worst else worst
-    return sqrt(worst)
+    return worst
 
 
 def cubics(
