@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from penink_cli.blasting import hatching, marks, tile
-from penink_cli.blasting.sheet import Cells, Sheet, resample
+from penink_cli.blasting.sheet import Cells, Sheet, coverage, resample
 from penink_cli.blasting.threshold import blast_by_threshold
 from penink_cli.ground.device import MEAN
 from penink_cli.ground.errors import ParameterError
@@ -18,6 +18,8 @@ from penink_cli.ground.model import Directions, EdgeList, Floats, Lines, Strokes
 RULES = ("best", "strict", "threshold")
 #: The broadest pen that small dark things are filled with.
 MARK_PT = 0.5
+#: Cells of which so much lies within a point of a small dark thing belong to it.
+NEAR_MARK = 0.3
 #: How often a blast calls its `tick`, at the most.
 TICKS = 5
 
@@ -75,6 +77,9 @@ def blast(
     finest = pen_pt or min([*texture.strokes.widths.tolist(), *(layer.pen_pt for layer in texture.layers), MARK_PT])
     small = marks.marks(tone, width_pt, height_pt, finest, MEAN * gain, pen_pt is not None, sheet.ink)
     hatching.draw_first(sheet, small)
+    if len(small):  # nor are they thin things to be drawn along
+        near = coverage(small, sheet.rows, sheet.columns, 2.0) > NEAR_MARK
+        told = near if told is None else told | near
     if rule == "best" and texture.layers:
         along = None if directions is None else field_at(sheet, directions, edges)
         strokes = hatching.hatch_sheet(sheet, texture.layers, edges, gain, seed, pen_pt, tick, along, told)

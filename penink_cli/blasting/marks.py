@@ -19,8 +19,9 @@ from penink_cli.ground.model import Floats, Strokes
 LEVEL, CORE, PAPER, NEAR_PT, FAR_PT, HALF_PT = 0.5, 0.75, 0.12, 1.0, 2.5, 7.0
 #: Rows of strokes: so many painted widths apart.
 PITCH = 0.8
-#: Up to this size (points) one dot is the whole thing, if it is no more than so many times as long as broad.
-DOT_PT, ROUND = 3.2, 1.4
+#: Up to this size (points) one dot is the whole thing, if it is no more than so many times as long as broad and
+#: fills so much of the box around it.
+DOT_PT, ROUND, FULL = 3.2, 1.4, 0.6
 #: What is covered by so much is drawn already.
 INKED = 0.6
 #: The tone is looked at so finely, pixels in a point.
@@ -61,7 +62,8 @@ def marks(
         if float(around[mine].max()) < CORE:
             continue
         off = ndimage.distance_transform_edt(~mine) / px
-        ring = (off >= NEAR_PT) & (off <= FAR_PT)
+        others = ndimage.distance_transform_edt(part[window] == 0) / px  # letters stand close
+        ring = (off >= NEAR_PT) & (off <= FAR_PT) & (others >= NEAR_PT)
         if ring.any() and float(around[ring].max()) > PAPER:
             continue
         if float(ndimage.distance_transform_edt(np.pad(mine, 1)).max()) / px > HALF_PT:
@@ -73,7 +75,8 @@ def marks(
         area = math.fsum(np.minimum(around[off <= 1.0], 1.0).tolist()) / (px * px)
         sides = (rows.max() - rows.min() + 1) / px, (columns.max() - columns.min() + 1) / px
         size = 2 * math.sqrt(area / math.pi)
-        if not fixed and size <= DOT_PT and max(sides) <= ROUND * min(sides):
+        rounded = max(sides) <= ROUND * min(sides) and area >= FULL * sides[0] * sides[1]
+        if not fixed and size <= DOT_PT and rounded:
             weight = np.where(off <= 1.0, around, 0.0)
             total = math.fsum(weight.ravel().tolist())
             x = math.fsum((weight * (np.arange(weight.shape[1]) + 0.5)).ravel().tolist()) / total + left
