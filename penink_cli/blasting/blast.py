@@ -12,10 +12,10 @@ from penink_cli.blasting.sheet import Cells, Sheet, coverage, resample
 from penink_cli.blasting.threshold import blast_by_threshold
 from penink_cli.ground.device import MEAN
 from penink_cli.ground.errors import ParameterError
-from penink_cli.ground.model import Directions, EdgeList, Floats, Lines, Strokes, Texture
+from penink_cli.ground.model import Directions, EdgeList, Engraving, Floats, Lines, Strokes, Texture
 
 #: The rules by which strokes are chosen.
-RULES = ("best", "strict", "threshold")
+RULES = ("best", "strict", "threshold", "engrave")
 #: The broadest pen that small dark things are filled with.
 MARK_PT = 0.5
 #: Cells of which so much lies within a point of a small dark thing belong to it.
@@ -49,7 +49,8 @@ def blast(
     device_dpi: of the printer, which paints every dot that a stroke touches; None where nothing is gained.
     rule: "best", true tone in a closed loop; "strict", the paper's, no stroke that makes any place too dark;
         "threshold", each stroke wherever the tone exceeds the one at which the texture has it enter: what an
-        illustration that draws itself does on a device. It knows no seed.
+        illustration that draws itself does on a device. It knows no seed. "engrave": lines that swell, those of the
+        texture if it has them, as "best" draws such a texture.
     outlines: strokes drawn already, whose ink counts; they are not among those returned.
     directions: a field along which hatching runs, in place of its layers' angles.
     lines: telling lines of the picture: light ones are left out, and beside the dark ones, which are drawn already and
@@ -80,7 +81,13 @@ def blast(
     if len(small):  # nor are they thin things to be drawn along
         near = coverage(small, sheet.rows, sheet.columns, 2.0) > NEAR_MARK
         told = near if told is None else told | near
-    if rule == "best" and texture.layers:
+    if rule == "engrave" or (rule == "best" and texture.engraving is not None and pen_pt is None):
+        from penink_cli.blasting.engraving import engrave
+
+        kind = texture.engraving or Engraving(angle=texture.layers[0].angle if texture.layers else Engraving.angle)
+        along = None if directions is None or not kind.along else field_at(sheet, directions, edges)
+        strokes = engrave(sheet, kind, edges, seed, along, tick)
+    elif rule == "best" and texture.layers:
         along = None if directions is None else field_at(sheet, directions, edges)
         strokes = hatching.hatch_sheet(sheet, texture.layers, edges, gain, seed, pen_pt, tick, along, told)
     else:

@@ -36,7 +36,7 @@ from penink_cli.options.textures import find_texture, texture_option
 if TYPE_CHECKING:
     from penink_cli.ground.model import Floats, Texture
 
-RULES = ("best", "strict", "threshold")
+RULES = ("best", "strict", "threshold", "engrave")
 
 
 @click.command()
@@ -67,7 +67,8 @@ RULES = ("best", "strict", "threshold")
     type=click.Choice(RULES),
     default="best",
     show_default=True,
-    help="best: true tone. strict: the paper's rule. threshold: each stroke where the tone exceeds its own.",
+    help="best: true tone. strict: the paper's rule. threshold: each stroke where the tone exceeds its own. "
+    "engrave: lines that swell, whatever the texture.",
 )
 @click.option(
     "--directions",
@@ -149,7 +150,8 @@ def blast(
     for line in warnings(tone, texture, pen, device_dpi):
         warn(line)
     if directions and not follows(texture, rule):
-        warn(f"{texture.name} is not drawn along directions: by the rule \"best\" a texture with hatching layers is")
+        why = 'by the rule "best" a texture with hatching layers is, save engravings that are straight'
+        warn(f"{texture.name} is not drawn along directions: {why}")
     with progress(TICKS, "blasting", quiet) as more:
         strokes = blast_tone(
             tone,
@@ -176,6 +178,8 @@ def blast(
 
 def follows(texture: Texture, rule: str) -> bool:
     """Whether strokes of a texture run along a field of directions where there is one."""
+    if rule == "engrave" or (rule == "best" and texture.engraving):
+        return texture.engraving is None or texture.engraving.along
     return rule == "best" and bool(texture.layers)
 
 

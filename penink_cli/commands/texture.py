@@ -62,6 +62,11 @@ def describe(found: Texture, device_dpi: float | None) -> str:
             f"layer     {layer.angle:g}° from tone {layer.low:g} to {layer.high:g}, "
             f"pen {layer.pen_pt:g} pt{closest}{wave}"
         )
+    if (lines_of := found.engraving) is not None:
+        shape = "along the form, else at" if lines_of.along else "wavering at" if lines_of.waver else "straight at"
+        how = "rings" if lines_of.centre else f"{shape} {lines_of.angle:g}°"
+        apart = f"{lines_of.lines} across" if lines_of.lines else f"{lines_of.spacing_pt:g} pt apart"
+        lines.append(f"engraving lines that swell, {how}, {apart}, from {lines_of.finest_pt:g} pt on")
     return "\n".join(lines) + "\n"
 
 
@@ -88,6 +93,20 @@ def show(name: str, as_file: bool, device_dpi: float | None, output: str | None,
 @click.option("--angle", type=Finite(-360, 360), metavar="DEGREES", help="Direction, clockwise from the right.")
 @click.option("--spacing", type=Length(zero=True), default=0.0, help="Lines of one layer are nowhere closer.")
 @click.option("--pen", type=LENGTH, help="Width of the strokes.")
+@click.option("--finest", type=LENGTH, help="Of an engraving: least width of a line.")
+@click.option(
+    "--lines",
+    type=click.IntRange(1, 100_000),
+    metavar="N",
+    help="Of an engraving: so many lines to the picture's width, whatever its size, instead of --spacing.",
+)
+@click.option(
+    "--centre",
+    "--center",
+    type=(Finite(-100, 100), Finite(-100, 100)),
+    metavar="X Y",
+    help="Of contour-rings: their centre, in parts of the picture's width and height.",
+)
 @click.option("--layers", type=click.IntRange(1, 4), metavar="1…4", help="Directions of hatching.")
 @click.option("--seed", type=click.IntRange(0, 2**63 - 1), default=0, show_default=True, metavar="N")
 @click.option("--name", help="The texture's name.  [default: KIND]")
@@ -99,6 +118,9 @@ def make(
     pen: float | None,
     layers: int | None,
     seed: int,
+    finest: float | None,
+    lines: int | None,
+    centre: tuple[float, float] | None,
     name: str | None,
     output: str | None,
     **_: Any,
@@ -109,7 +131,9 @@ def make(
     """
     from penink_cli.textures.make import make as make_texture
 
-    made = make_texture(kind, angle=angle, pen=pen, spacing=spacing, layers=layers, seed=seed)
+    made = make_texture(
+        kind, angle=angle, pen=pen, spacing=spacing, layers=layers, seed=seed, finest=finest, lines=lines, centre=centre
+    )
     if name:
         made = replace(made, name=name)
     from penink_cli.formats import texture as texture_format

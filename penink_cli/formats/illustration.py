@@ -40,7 +40,7 @@ MAX_BYTES = 1 << 20  # of the manifest
 MAX_LAYERS = 64
 MAX_SIZE = 144_000.0  # points
 MAX_PEN = 72.0
-RULES = ("best", "strict", "threshold")
+RULES = ("best", "strict", "threshold", "engrave")
 
 _SHIPPED = re.compile(r"[a-z0-9_-]{1,60}", re.ASCII)
 

@@ -21,7 +21,7 @@ import numpy as np
 from penink_cli.formats import strict_json
 from penink_cli.formats.strokes import LIMIT, Sink
 from penink_cli.ground.errors import FormatError
-from penink_cli.ground.model import Floats, HatchLayer, Ints, Strokes, Texture
+from penink_cli.ground.model import Engraving, Floats, HatchLayer, Ints, Strokes, Texture
 
 MAX_BYTES = 64 << 20
 
@@ -36,6 +36,14 @@ _LAYER = {
     "wave_length": ("wave_length_pt", 0.0, LIMIT),
     "turn": ("turn", -360.0, 360.0),
 }
+# The same for Engraving.
+_ENGRAVING = {
+    "spacing": ("spacing_pt", 0.1, LIMIT),
+    "finest": ("finest_pt", 0.001, LIMIT),
+    "angle": ("angle", -360.0, 360.0),
+    "waver": ("waver", 0.0, 10.0),
+}
+MOST_LINES = 100_000
 _NEEDED = ("angle", "from", "to", "pen")
 
 
@@ -69,7 +77,10 @@ def _texture(document: dict[str, Any]) -> Texture:
     points = points[np.repeat(begin[order] - first[:-1], sizes[order]) + np.arange(len(points))]
     strokes = Strokes(width, height, points, first, widths[order], texture=name)
     layers = strict_json.array(document.get("layers", []), "layers")
-    return Texture(name, strokes, priorities[order], whole, tuple(_layer(layer, i) for i, layer in enumerate(layers)))
+    return Texture(
+        name, strokes, priorities[order], whole, tuple(_layer(layer, i) for i, layer in enumerate(layers)),
+        _engraving(document.get("engraving")),
+    )  # fmt: skip
 
 
 def _strokes(items: list[Any]) -> tuple[Floats, Floats, Ints, Floats]:
@@ -130,6 +141,53 @@ def _layer(value: Any, i: int) -> HatchLayer:
     return layer
 
 
+def _engraving(value: Any) -> Engraving | None:
+    """The lines that swell, where the texture has them."""
+    if value is None:
+        return None
+    if not isinstance(value, dict):
+        raise FormatError(f"engraving is {strict_json.quoted(value)}; an object is needed")
+    found: dict[str, Any] = {
+        field: strict_json.number(value[name], f"engraving: {name}", least, most)
+        for name, (field, least, most) in _ENGRAVING.items()
+        if name in value
+    }
+    for name in ("along", "blunt"):
+        if name in value:
+            if type(value[name]) is not bool:
+                raise FormatError(f"engraving: {name} is {strict_json.quoted(value[name])}; true or false is needed")
+            found[name] = value[name]
+    if "centre" in value:
+        ((x, y),) = strict_json.pairs([value["centre"]], "engraving: centre", "engraving: centre").tolist()
+        if not max(abs(x), abs(y)) <= 100:
+            raise FormatError("engraving: centre is beyond 100 times the sheet")
+        found["centre"] = (x, y)
+    if "lines" in value:
+        lines = value["lines"]
+        if type(lines) is not int or not 1 <= lines <= MOST_LINES:
+            raise FormatError(
+                f"engraving: lines is {strict_json.quoted(lines)}; a whole number from 1 to {MOST_LINES} is needed"
+            )
+        found["lines"] = lines
+    engraving = Engraving(**found)
+    if not engraving.finest_pt < engraving.spacing_pt:
+        raise FormatError(
+            f"engraving: finest is {engraving.finest_pt:g} and spacing {engraving.spacing_pt:g}; finest must be less"
+        )
+    return engraving
+
+
+def _engraving_text(engraving: Engraving) -> str:
+    """The member of the file."""
+    members = [(name, _fixed(getattr(engraving, field), 4)) for name, (field, _, _) in _ENGRAVING.items()]
+    members += [(name, json.dumps(getattr(engraving, name))) for name in ("along", "blunt")]
+    if engraving.centre is not None:
+        members.append(("centre", "[{}, {}]".format(*(_fixed(v, 4) for v in engraving.centre))))
+    if engraving.lines is not None:
+        members.append(("lines", str(engraving.lines)))
+    return "{" + ", ".join(f'"{name}": {text}' for name, text in members) + "}"
+
+
 def write(out: Sink, texture: Texture) -> None:
     """Write a texture, one stroke a line; coordinates in thousandths of a point."""
     s = texture.strokes
@@ -148,6 +206,8 @@ def write(out: Sink, texture: Texture) -> None:
             for layer in texture.layers
         )
         head += f', "layers": [\n  {layers}]'
+    if texture.engraving is not None:
+        head += f', "engraving": {_engraving_text(texture.engraving)}'
     out.write((head + ', "strokes": [\n').encode("ascii"))
     lines = []
     for i in range(len(s)):

@@ -345,6 +345,27 @@ class HatchLayer:
     turn: float | None = None
 
 
+@dataclass(frozen=True)
+class Engraving:
+    """Lines that swell: evenly far apart, their width the tone.
+
+    spacing_pt: distance of their middles, points. finest_pt: the least width of a line.
+    angle: degrees, clockwise from the right, where lines are straight. along: they run along a field if there is one.
+    centre: x and y in parts of the sheet's width and height of the point about which they are rings, None for none.
+    waver: how much straight lines waver, 0 not at all, 1 as the grain of wood. blunt: ends do not taper.
+    lines: keep so many lines across the sheet's width, whatever its size, instead of the spacing; None for no number.
+    """
+
+    spacing_pt: float = 1.46
+    finest_pt: float = 0.16
+    angle: float = -30.0
+    along: bool = True
+    centre: tuple[float, float] | None = None
+    waver: float = 0.0
+    blunt: bool = False
+    lines: int | None = None
+
+
 @dataclass(frozen=True, eq=False)
 class Texture:
     """A stroke texture: a tile of prioritized strokes that repeats in x and y.
@@ -354,6 +375,7 @@ class Texture:
     priorities: (s,) ascending.
     whole: strokes are drawn whole or not at all (stipple dots, mortar), never trimmed to a run.
     layers: what the tile is an instance of where that is plain hatching, in the order of drawing.
+    engraving: the lines that swell for which the tile stands where only strokes of one width can be drawn.
     """
 
     name: str
@@ -361,6 +383,7 @@ class Texture:
     priorities: Floats
     whole: bool = False
     layers: tuple[HatchLayer, ...] = ()
+    engraving: Engraving | None = None
 
 
 @dataclass(frozen=True)

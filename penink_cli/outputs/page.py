@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from penink_cli.ground.errors import ParameterError
-from penink_cli.ground.model import Strokes
+from penink_cli.ground.model import Floats, Strokes
 from penink_cli.ground.papers import LIMIT, paper_size
 
 
@@ -59,6 +59,19 @@ def ink_box(strokes: Strokes) -> tuple[float, float, float, float] | None:
     """x0, y0, x1, y1 of a box that holds all ink of these strokes (y down), by their control points."""
     if not len(strokes):
         return None
-    half = np.repeat(strokes.widest / 2, np.diff(strokes.first))[:, None]
+    half = _radii(strokes)[:, None]
     low, high = (strokes.points - half).min(axis=0), (strokes.points + half).max(axis=0)
     return float(low[0]), float(low[1]), float(high[0]), float(high[1])
+
+
+def _radii(strokes: Strokes) -> Floats:
+    """Half the width at each control point (p,), those between two knots having their share of either's: as a Bézier
+    curve lies within its control points, so do its discs within these.
+    """
+    if strokes.knot_widths is None:
+        return np.repeat(strokes.widths / 2, np.diff(strokes.first))
+    number = np.arange(len(strokes.points)) - np.repeat(strokes.first[:-1], np.diff(strokes.first))
+    before = np.repeat(strokes.knots[:-1], np.diff(strokes.first)) + number // 3
+    share = number % 3 / 3
+    after = np.minimum(before + 1, len(strokes.knot_widths) - 1)
+    return (strokes.knot_widths[before] * (1 - share) + strokes.knot_widths[after] * share) / 2

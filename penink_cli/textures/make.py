@@ -9,13 +9,15 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
 from penink_cli.ground import exact
 from penink_cli.ground.angles import direction
 from penink_cli.ground.device import DOT, MEAN
-from penink_cli.ground.model import Floats, HatchLayer, Strokes, Texture
+from penink_cli.ground.errors import ParameterError
+from penink_cli.ground.model import Engraving, Floats, HatchLayer, Strokes, Texture
 from penink_cli.textures.even import Torus
 
 TILE_PT = 144.0
@@ -289,6 +291,22 @@ def brick(angle: float, pen: float, spacing: float, layers: int, seed: int) -> T
     return tile("brick", strokes, [pen] * len(strokes), width, height, seed, whole=True)
 
 
+def engraved(
+    name: str, kind: Engraving, angle: float, pen: float, spacing: float, layers: int, seed: int
+) -> Texture:
+    """Lines that swell; the tile holds lines of one width in their direction, which stand for them."""
+    stands = hatching(name, angle, layers, pen, 0.0, seed)
+    return replace(stands, engraving=replace(kind, angle=angle, spacing_pt=spacing or kind.spacing_pt))
+
+
+#: Kind -> what its lines are like.
+ENGRAVINGS = {
+    "engraving": Engraving(),
+    "engraving-straight": Engraving(along=False),
+    "contour-rings": Engraving(along=False, centre=(0.5, 0.5)),
+    "wood": Engraving(along=False, spacing_pt=1.78, finest_pt=0.25, waver=1.0, blunt=True),
+}
+
 #: Kind -> (maker, its usual angle, pen and number of layers).
 MAKERS: dict[str, tuple[Callable[[float, float, float, int, int], Texture], float, float, int]] = {
     "parallel": (parallel, -45.0, 0.4, 1),
@@ -300,17 +318,32 @@ MAKERS: dict[str, tuple[Callable[[float, float, float, int, int], Texture], floa
     "grain": (grain, -8.0, 0.4, 1),
     "brick": (brick, 0.0, 0.4, 1),
     "grass": (grass, 0.0, 0.4, 1),
+    **{name: (partial(engraved, name, kind), -30.0, 0.4, 1) for name, kind in ENGRAVINGS.items()},
 }
 
 
 def make(
     kind: str, *, angle: float | None = None, pen: float | None = None, spacing: float = 0.0, layers: int | None = None,
-    seed: int = 0,
+    seed: int = 0, finest: float | None = None, lines: int | None = None, centre: tuple[float, float] | None = None,
 ) -> Texture:  # fmt: skip
     """A texture of a kind, by default as it is shipped.
 
     angle: of the first layer, degrees, clockwise from the right. pen: stroke width, points. spacing: hatching lines
     of one layer are nowhere closer, points; 0 for no limit. layers: 1 … 4 directions of hatching.
+    Of engravings only: spacing is the lines' distance, finest the least width of a line, points; lines: so many to the
+    sheet's width; centre: of rings, parts of the sheet. Raises ParameterError where these do not fit the kind.
     """
     maker, usual_angle, usual_pen, usual_layers = MAKERS[kind]
-    return maker(usual_angle if angle is None else angle, pen or usual_pen, spacing, layers or usual_layers, seed)
+    made = maker(usual_angle if angle is None else angle, pen or usual_pen, spacing, layers or usual_layers, seed)
+    if made.engraving is None:
+        if (finest, lines, centre) != (None, None, None):
+            raise ParameterError(f"{kind} is no engraving: {', '.join(ENGRAVINGS)} are")
+        return made
+    engraving = replace(made.engraving, lines=lines, finest_pt=finest or made.engraving.finest_pt)
+    if not engraving.finest_pt < engraving.spacing_pt:
+        raise ParameterError(f"a finest line of {engraving.finest_pt:g} pt at a spacing of {engraving.spacing_pt:g}")
+    if centre is not None:
+        if engraving.centre is None:
+            raise ParameterError(f"{kind} has no centre; contour-rings has")
+        engraving = replace(engraving, centre=centre)
+    return replace(made, engraving=engraving)

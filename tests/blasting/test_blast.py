@@ -10,6 +10,7 @@ from penink_cli.blasting.sheet import Sheet
 from penink_cli.ground.errors import ParameterError
 from penink_cli.ground.model import EdgeList, HatchLayer, Strokes, Texture
 from penink_cli.options.textures import find_texture, shipped
+from penink_cli.outputs.page import ink_box
 from tests.blasting import measures
 
 
@@ -211,6 +212,8 @@ def test_all_ink_lies_within_the_frame():
         for i in range(len(strokes)):
             line, half = measures.flattened(strokes, i), strokes.widths[i] / 2
             assert (line - half > -0.2).all() and (line + half < (90.2, 60.2)).all(), name
+        x0, y0, x1, y1 = ink_box(strokes)
+        assert min(x0, y0) > -0.2 and x1 < 60.2 and y1 < 40.2, name
 
 
 @pytest.mark.parametrize("level", [0.0, 1e-6, 0.5, 1.0])

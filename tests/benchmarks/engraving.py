@@ -1,0 +1,147 @@
+"""Engraving measured: ``python -m tests.benchmarks.engraving [--quick]``.
+
+Tone as the eye sees it at 600 and 1200 dpi, on photographs and a ramp, straight and along the form; the largest step
+of the ramp; how smoothly widths go; time and memory of a blast of 8 inches; bytes a knot; other programs' renderings.
+"""
+
+from __future__ import annotations
+
+import argparse
+import io
+import resource
+import shutil
+import subprocess
+import tempfile
+import time
+from functools import partial
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import skimage.data
+
+from penink_cli.blasting.blast import blast
+from penink_cli.blasting.engraving import KNOT_PT
+from penink_cli.ground.model import ColourImage, Directions, Floats, GreyImage, Strokes
+from penink_cli.options.textures import find_texture
+from penink_cli.outputs import pdf, postscript, svg
+from penink_cli.outputs.page import lay_out
+from penink_cli.outputs.raster import cover
+from penink_cli.travel.order import ordered
+from tests.blasting import measures
+from tests.outputs.rendering import difference, ghostscript, pixels
+
+PHOTOGRAPHS = ("camera", "coins", "astronaut", "chelsea", "coffee", "rocket", "moon")
+
+
+def photograph(name: str) -> Floats:
+    """Tone (h, w) of a sample photograph, or a ramp."""
+    if name == "ramp":
+        return np.tile(np.linspace(0, 1, 512), (192, 1))
+    values = np.asarray(getattr(skimage.data, name)(), float)
+    grey = values[..., :3] @ np.array([0.299, 0.587, 0.114]) if values.ndim == 3 else values
+    return 1.0 - grey / 255.0
+
+
+def form(name: str) -> Directions | None:
+    """The field of a photograph."""
+    if name == "ramp":
+        return None
+    from penink_cli.directions.detection import detect_directions
+
+    values = np.asarray(getattr(skimage.data, name)())
+    photo = GreyImage(values) if values.ndim == 2 else ColourImage(np.ascontiguousarray(values[..., :3]))
+    return detect_directions(photo)
+
+
+def engraved(tone: Floats, inches: float, dpi: float, directions: Directions | None = None) -> Strokes:
+    """The engraving of a tone."""
+    width = 72.0 * inches
+    texture = find_texture("engraving")
+    height = width * tone.shape[0] / tone.shape[1]
+    return blast(tone, width, height, None, texture, device_dpi=dpi, directions=directions).rounded()
+
+
+def tones(names: tuple[str, ...], sizes: tuple[float, ...]) -> None:
+    """RMS at most 1.0, bias within .25."""
+    print("tone, %                    straight              along the form")
+    for name in names:
+        tone = photograph(name)
+        for inches in sizes:
+            for dpi in (600.0, 1200.0):
+                figures = []
+                for directions in (None, form(name)):
+                    rms, bias, worst = measures.tone_figures(engraved(tone, inches, dpi, directions), tone, dpi)
+                    figures.append(f"rms {rms:4.2f} bias {bias:5.2f} worst {worst:5.1f}")
+                print(f"{name:10} {inches:g} in {dpi:4.0f} dpi  " + "   ".join(figures), flush=True)
+
+
+def steps() -> None:
+    """The ramp: its largest step and fall; widths: their second difference in parts of the distance of knots."""
+    tone = photograph("ramp")
+    strokes = engraved(tone, 4, 600)
+    printed = 100 * np.linspace(0, 1, 400) - measures.tone_error(strokes, tone)[15:-15].mean(axis=0)
+    change = np.diff(printed[8:-8:4])
+    print(f"ramp: steps of a hundredth change the tone by {change.min():.2f} to {change.max():.2f} %")
+    knots, widths = strokes.knots, strokes.at_knots
+    bends = [np.abs(np.diff(widths[a:b], 2))[3:-3] for a, b in pairwise(knots) if b - a > 10]
+    bend = np.quantile(np.concatenate(bends), 0.99) / KNOT_PT
+    print(f"widths: second difference {bend:.3f} of the distance of knots (99 %)")
+
+
+def cost() -> None:
+    """8 in with the field given: at most 2.5 s of processor, 250 MB."""
+    tone, directions = photograph("astronaut"), form("astronaut")
+    begun = time.process_time()
+    strokes = engraved(tone, 8, 600, directions)
+    spent, most = time.process_time() - begun, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+    print(f"8 in: {len(strokes)} strokes, {len(strokes.at_knots)} knots, {spent:.2f} s, {most:.0f} MB in all")
+
+
+def sizes_and_renderings() -> None:
+    """PostScript of at most 40 bytes a knot, 14 compressed; renderings within .5 %."""
+    strokes = engraved(photograph("chelsea"), 4, 600, form("chelsea"))
+    page, near = lay_out([strokes]), partial(ordered, improve=False)
+    ours = np.concatenate(list(cover.bands([strokes], page, 300, 255))).astype(float)
+    with tempfile.TemporaryDirectory() as folder:
+        at = Path(folder)
+        for compress in (False, True):
+            out = io.BytesIO()
+            postscript.write(out, [strokes], page, compress=compress, order=near)
+            (at / "a.eps").write_bytes(out.getvalue())
+            each = len(out.getvalue()) / len(strokes.at_knots)
+            print(f"PostScript{', compressed' * compress}: {each:.1f} bytes a knot")
+        for module, name in ((pdf, "a.pdf"), (svg, "a.svg")):
+            out = io.BytesIO()
+            module.write(out, [strokes], page)
+            (at / name).write_bytes(out.getvalue())
+        shots = {
+            "Ghostscript, EPS": ghostscript(at / "a.eps", 300, True, f"-g{ours.shape[1]}x{ours.shape[0]}"),
+            "Ghostscript, PDF": ghostscript(at / "a.pdf", 300),
+        }
+        for program, command in (
+            ("pdftoppm", ["-gray", "-r", "300", at / "a.pdf"]),
+            ("mutool", ["draw", "-q", "-r", "300", "-c", "gray", "-F", "pgm", "-o", "-", at / "a.pdf"]),
+            ("rsvg-convert", ["-d", "300", "-p", "300", "-b", "white", at / "a.svg"]),
+        ):
+            if shutil.which(program):
+                shots[program] = pixels(subprocess.run([program, *command], capture_output=True, check=True).stdout)
+        for name, shot in shots.items():
+            h, w = (min(a, b) for a, b in zip(ours.shape, shot.shape))
+            bias = (ours[:h, :w] - shot[:h, :w]).mean() / 2.55
+            print(f"to-pgm less {name}: {difference(ours, shot, 300):.2f} % after a low-pass, {bias:+.2f} on the mean")
+
+
+def main() -> None:
+    """All of it."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--quick", action="store_true", help="three pictures at 4 in")
+    quick = parser.parse_args().quick
+    steps()
+    sizes_and_renderings()
+    cost()
+    tones(("ramp", *PHOTOGRAPHS[: 3 if quick else None]), (4.0,) if quick else (4.0, 8.0))
+
+
+if __name__ == "__main__":
+    main()
