@@ -53,8 +53,9 @@ def compare(
     they are, 1 with a line where they are not; the figures go to standard output.
 
     \b
-    penink compare yesterday.strokes.jsonl today.strokes.jsonl
-    penink to-pgm today.strokes.jsonl | penink compare --tone 5 --place 2 yesterday.png
+    penink compare photo.strokes.jsonl hatching.strokes.jsonl
+    penink to-pgm photo.strokes.jsonl -o photo.drawn.pgm
+    penink to-png hatching.strokes.jsonl | penink compare --tone 5 --place 2 photo.drawn.pgm
     """
     from penink_cli.ground.errors import ParameterError
     from penink_cli.ground.model import Strokes
