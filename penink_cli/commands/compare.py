@@ -55,7 +55,7 @@ def compare(
     \b
     penink compare photo.strokes.jsonl hatching.strokes.jsonl
     penink to-pgm photo.strokes.jsonl -o photo.drawn.pgm
-    penink to-png hatching.strokes.jsonl | penink compare --tone 5 --place 2 photo.drawn.pgm
+    penink to-pgm hatching.strokes.jsonl | penink compare --tone 5 --place 2 photo.drawn.pgm
     """
     from penink_cli.ground.errors import ParameterError
     from penink_cli.ground.model import Strokes
