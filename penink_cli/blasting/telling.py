@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from penink_cli.blasting.sheet import CELL_PT, coverage, resample
+from penink_cli.blasting.sheet import CELL_PT, Cells, coverage, resample
 from penink_cli.composition.filters import blurred
 from penink_cli.ground.model import Floats, LineChoice, Lines, Strokes
 from penink_cli.lines.strokes import line_strokes
@@ -14,9 +14,9 @@ from penink_cli.lines.strokes import line_strokes
 WHITE = LineChoice(pen_pt=1.8, density=0.12, per_inch2=5.0)
 #: They show where the tone around, over a Gaussian of this σ, exceeds DARK, and in full from FULL on.
 AROUND_PT, DARK, FULL = 3.0, 0.35, 0.65
-#: Beside dark lines, within so many points of them, hatching keeps this part of the tone away, unless it is nearly
+#: Beside dark lines, within so many points of them, hatching moves this part of the tone away, unless it is nearly
 #: black there.
-CLEAR_PT, CLEAR, BLACK = 0.9, 0.5, (0.7, 0.9)
+CLEAR_PT, CLEAR, BLACK = 1.0, 0.7, (0.7, 0.9)
 #: What is no further than this from a dark line is told by it.
 TOLD_PT = 1.6
 
@@ -36,12 +36,20 @@ def told(
     around = blurred(resample(tone, rows, columns).astype(np.float32), AROUND_PT / CELL_PT, threads)
     light = line_strokes(lines, width_pt, height_pt, WHITE, white=True)
     shown = np.clip((around - DARK) / (FULL - DARK), 0, 1) * coverage(light, rows, columns)
-    kept = 1 - shown
+    left = tone * resample((1 - shown).astype(np.float64), *tone.shape)
     near = np.zeros((rows, columns), np.bool_)
     if ink is not None and len(ink):
         beside = coverage(ink, rows, columns, 2 * CLEAR_PT) - coverage(ink, rows, columns)
         grey = np.clip((BLACK[1] - around) / (BLACK[1] - BLACK[0]), 0, 1)
-        kept = kept * (1 - CLEAR * grey * beside)
+        aside = (CLEAR * grey * beside * resample(left, rows, columns)).astype(np.float32)
+        # what is kept away there goes a little further off: the tone is the same
+        moved = blurred(aside, AROUND_PT / CELL_PT, threads) - aside
+        left = np.clip(left + _spread(moved, *left.shape), 0, 1)
         near = coverage(ink, rows, columns, 2 * TOLD_PT) > 0.5
-    return tone * resample(kept.astype(np.float64), *tone.shape), near
+    return left, near
+
+
+def _spread(values: Cells, rows: int, columns: int) -> Floats:
+    """Values of either sign at another size; `resample` knows none below 0."""
+    return resample(0.5 + 0.5 * values.astype(np.float64), rows, columns) * 2 - 1
 
