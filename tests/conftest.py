@@ -35,13 +35,14 @@ def packages() -> dict[str, str]:
     return {program: package for program, package, _ in lines}
 
 
-PACKAGES = packages() | {"sh": "dash"}
+PACKAGES = packages() | {"sh": "dash", "uname": "coreutils"}  # the two, which Python itself starts, are everywhere
 RENDERERS = ("gs", "chromium", "pdfimages", "rsvg-convert")
 
 
 def _watch(event: str, arguments: tuple[object, ...]) -> None:
     """Fail a test that starts a program which is missing, or which nobody installs."""
-    if event != "subprocess.Popen":
+    test = os.environ.get("PYTEST_CURRENT_TEST", "").rsplit(" (", 1)[0]
+    if event != "subprocess.Popen" or not test:
         return
     program = os.fsdecode(arguments[0] or arguments[1][0])  # type: ignore[index, arg-type]
     name = os.path.basename(program)
@@ -50,7 +51,6 @@ def _watch(event: str, arguments: tuple[object, ...]) -> None:
     listed = next((known for known in PACKAGES if known.startswith(name)), None)
     assert listed, f"{name} is not in .ci/packages: nobody installs it for the tests"
     assert shutil.which(program), f"{name} is missing: run 'apt-get install {PACKAGES[listed]}' as root"
-    test = os.environ.get("PYTEST_CURRENT_TEST", "").rsplit(" (", 1)[0]
     if name.startswith(RENDERERS) and test in _quick:
         _quick.discard(test)
         pytest.fail(f"{test} starts {name}: put it among RENDERED in tests/conftest.py")
