@@ -4,6 +4,7 @@
 #   make test       the tests            make lint    ruff, mypy, cython-lint
 #   make quick      the tests that neither draw with Ghostscript or Chromium nor take long
 #   make figures    the paper's figures with our own pictures: samples/out/figures.pdf, .png and table1.md
+#   make gallery    the README's pictures: samples/gallery/*.png
 #   make bench      the measurements     make dist    wheel and source distribution
 #   make check-dist both, installed in an empty environment
 #   make check-pythons  the same bytes under every CPython that this machine has (PYTHONS=…)
@@ -23,7 +24,7 @@ INSTALLED := $(VENV)/.installed
 KERNELS   := $(shell find penink_cli -path '*/_compiled/*.pyx')
 BENCHES   := $(patsubst tests/benchmarks/%.py,tests.benchmarks.%,$(filter-out %/__init__.py %/_%,$(wildcard tests/benchmarks/*.py)))
 
-.PHONY: all install samples figures test lint bench fuzz torture manual dist check-dist check-pythons check-roots clean needs quick
+.PHONY: all install samples gallery figures test lint bench fuzz torture manual dist check-dist check-pythons check-roots clean needs quick
 .DELETE_ON_ERROR:
 
 all: samples
@@ -43,6 +44,10 @@ $(INSTALLED): pyproject.toml penink_cli/__init__.py $(KERNELS) $(shell find peni
 
 samples: $(INSTALLED)
 	$(MAKE) -C samples PATH="$(BIN):$$PATH"
+
+gallery: $(INSTALLED)
+	PATH="$(BIN):$$PATH" $(BIN)/python samples/photographs.py samples/out
+	PATH="$(BIN):$$PATH" $(BIN)/python samples/gallery.py samples/out samples/gallery
 
 figures: $(INSTALLED)
 	$(MAKE) -C samples figures PATH="$(BIN):$$PATH"

@@ -42,6 +42,7 @@ SUBCOMMANDS = {
     "outline": ("outline", "Turn discontinuity edges into smooth outline strokes."),
     "render": ("render", "Draw an illustration anew for one size and one device."),
     "draw": ("draw", "Turn a photo into a pen-and-ink drawing, the whole chain in one call."),
+    "style": ("style", "List and show styles of drawing."),
     "texture": ("texture", "List, show, make and import stroke textures."),
     "pack": ("pack", "Pack an illustration and its members in one small file."),
     "to-html": ("to_html", "Write an illustration as one web page that draws itself."),
@@ -55,7 +56,7 @@ SUBCOMMANDS = {
     "completion": ("completion", "Print what makes a shell complete penink's words."),
 }
 # The subcommands of subcommands, which error lines name too.
-PARTS = {"texture": ("list", "show", "make", "import")}
+PARTS = {"style": ("list", "show"), "texture": ("list", "show", "make", "import")}
 
 
 class LazyGroup(click.Group):

@@ -16,7 +16,7 @@ HOUSE = ROOT / "penink_cli"
 FLOORS = (
     ("ground",),
     ("geometry", "travel"),
-    ("arrangement", "reconstruction", "textures", "formats"),
+    ("arrangement", "reconstruction", "textures", "styles", "formats"),
     ("composition",),
     ("directions",),
     ("lines",),

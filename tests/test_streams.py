@@ -278,3 +278,19 @@ def test_a_slow_non_blocking_input_is_read_to_its_end():
     writer.join()
     raw.close()
     assert found == b"0123456789" * 50_000
+
+
+def test_what_lies_on_the_workbench_is_in_no_file(tmp_path, monkeypatch, content):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "a").write_bytes(b"a file")
+    with streams.workbench({"a": b""}):
+        put("a", content, b"end")
+        put("b", b"a file too")
+        with streams.reading("a") as stream:
+            assert stream.read() == content + b"end"
+        with pytest.raises(RuntimeError), streams.writing("a"):
+            raise RuntimeError
+        assert streams.on_bench("a") and not streams.on_bench("b")
+    with streams.reading("a") as stream:
+        assert stream.read() == b"a file" and not streams.on_bench("a")
+    assert names(tmp_path) == ["a", "b"]

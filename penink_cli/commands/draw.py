@@ -2,61 +2,105 @@
 
 from __future__ import annotations
 
+import json
 import math
 import os
 import shlex
-from collections.abc import Callable, Sequence
-from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import click
 from click.core import ParameterSource
 
-from penink_cli.commands.blast import warnings
+from penink_cli.commands.chain import Chain, bench, check, found, worded, words
+from penink_cli.commands.compose import composition_options
 from penink_cli.ground.errors import in_quotes
-from penink_cli.ground.streams import writing
+from penink_cli.ground.units import parse_length
 from penink_cli.options.common import (
     LENGTH,
     DeviceDpi,
     Finite,
     filter_options,
-    processors,
     threads_option,
     verbose_option,
     warn,
 )
-from penink_cli.options.inputs import photo_options, read_photo
-from penink_cli.options.layers import as_printed
+from penink_cli.options.inputs import only_one_standard_input, photo_options, photo_words, read_colours
+from penink_cli.options.layers import colour_option, page_options
 from penink_cli.options.sheet import check_sheet
-from penink_cli.options.textures import find_texture, texture_option
+from penink_cli.options.styles import STYLE, find_style
+from penink_cli.options.textures import TEXTURE, find_texture
+from penink_cli.outputs.registry import ENDINGS, OF_ILLUSTRATIONS, OF_STROKES, ON_SCREEN, STROKES
 
 if TYPE_CHECKING:
-    from penink_cli.ground.model import Illustration, OutlineChoice, Strokes
+    from penink_cli.formats.style import Style, Value
 
-OUTLINE_PEN_PT = 0.7
+STYLE_NAME = "house"
+USUAL_WIDTH = 432.0
 OUTLINE_STRENGTH = 0.2  # the grey step that is worth an outline
 OUTLINE_LENGTH = 0.04  # of the photo's longer side: shorter chains are texture, and the hatching's to show
-PNG_DPI = 150.0
+COMPOSED_DPI = 288.0  # as `compose` has it
 PRINTER_DPI = 600.0
-ON_SCREEN = (".png", ".svg")  # these are looked at as they are, mostly; a printer would darken them
+POSTER_DPI = 1152.0  # pixels an inch that an illustration is made from: those of a drawing four times as wide
+DEVICE_SIDE = 254  # samples a side that a device is sent at the most
+
+# The options that are told to one stage, by their names there.
+_TOLD = {
+    "texture_name": ("blast", "texture"),
+    "gamma": ("blast", "gamma"),
+    "seed": ("blast", "seed"),
+    "strength": ("compose", "strength"),
+    "detail": ("compose", "detail"),
+    "mix": ("compose", "mix"),
+    "target": ("compose", "target"),
+    "vignette": ("compose", "vignette"),
+}
 
 
 @click.command()
 @filter_options
 @photo_options
-@texture_option
-@click.option("--width", type=LENGTH, default="6in", show_default=True, help="Width on paper: 4in, 100mm.")
-@click.option("--pen", type=LENGTH, help="Draw everything with one pen of this width.  [default: the texture's]")
-@click.option("--gamma", type=Finite(0.05, 20), default=1.0, metavar="G", help="Tone curve: grey is raised to it.")
+@click.option(
+    "--style",
+    "style_name",
+    type=STYLE,
+    default=STYLE_NAME,
+    show_default=True,
+    metavar="NAME|FILE",
+    help="A style of drawing (see penink style list), or its file; what other options say goes before it.",
+)
+@click.option(
+    "-t",
+    "--texture",
+    "texture_name",
+    type=TEXTURE,
+    metavar="NAME|FILE",
+    help="A shipped texture (see penink texture list) or a texture file.  [default: the style's]",
+)
+@click.option("--width", type=LENGTH, help="Width on paper: 4in, 100mm.  [default: 6in]")
+@click.option("--height", type=LENGTH, help="Height on paper, instead of --width.")
+@click.option("--pen", type=LENGTH, help="Draw everything with one pen of this width.  [default: the style's]")
+@click.option("--gamma", type=Finite(0.05, 20), metavar="G", help="Tone curve: grey is raised to it.  [default: 1]")
 @click.option("--seed", type=click.IntRange(0, 2**62), default=0, show_default=True, metavar="N", help="Another hand.")
 @click.option(
     "--device-dpi",
     type=DeviceDpi(),
     metavar="N|none",
     help="Resolution of the printer, which paints every dot that a stroke touches; none for plotters and screens."
-    "  [default: 600, for .png and .svg none]",
+    "  [default: 600, for .png, .pgm and .svg none]",
 )
-@click.option("--outlines/--no-outlines", default=True, help="Outline strokes along strong edges.  [default: yes]")
+@click.option("--outlines/--no-outlines", default=None, help="Strokes along strong edges.  [default: the style's]")
+@click.option("--lines/--no-lines", default=None, help="Telling lines.  [default: the style's]")
+@click.option(
+    "--directions",
+    "directions_file",
+    type=click.Path(allow_dash=True),
+    metavar="FILE",
+    help="Hatch along this: a field of directions, or your own strokes over the photo, a strokes file or SVG.",
+)
+@composition_options
+@page_options
+@colour_option
+@click.option("--order", is_flag=True, help="Order and turn the strokes so that a pen travels little (.svg).")
 @threads_option
 @verbose_option
 def draw(
@@ -64,174 +108,240 @@ def draw(
     output: str | None,
     max_pixels: int,
     quiet: bool,
-    texture_name: str,
-    width: float,
-    pen: float | None,
-    gamma: float,
-    seed: int,
-    device_dpi: float | None,
-    outlines: bool,
+    style_name: str,
+    width: float | None,
+    height: float | None,
     threads: int | None,
     verbose: bool,
+    **_: Any,
 ) -> None:
     """Turn a photo into a pen-and-ink drawing, the whole chain in one call.
 
-    The result is PostScript, or what the ending of -o says: .ps, .eps, .svg, .pdf, .png, .jsonl (strokes) or
-    .penink, the illustration itself, which `penink render` draws at any size. --verbose prints the chain of
-    filters that gives the same bytes.
+    The result is PostScript, or what the ending of -o says: .ps, .eps, .svg, .pdf, .png, .pgm, .jsonl (strokes),
+    .penink, the illustration itself, which `penink render` draws at any size, or .html, a page that draws it.
+    --verbose prints the chain of filters that gives the same bytes.
 
     \b
     penink draw photo.jpg -o photo.pdf
-    penink draw photo.jpg --width 24in --device-dpi 1200 | lpr
+    penink draw photo.jpg --style engraving --width 24in --device-dpi 1200 | lpr
     """
-    from penink_cli.ground.model import Illustration, Layer, OutlineChoice
-    from penink_cli.illustration import drawing
     from penink_cli.options.progress import progress
 
+    context = click.get_current_context()
+    given = {name: value for name, value in context.params.items() if _is_given(context, name)}
     ending = os.path.splitext(output or "-")[1].lower() or ".ps"  # a FIFO or device has no ending
-    if ending not in WRITERS:
-        raise click.UsageError(f"-o {in_quotes(output or '')}: known endings are {', '.join(WRITERS)}")
-    threads = threads or processors()
-    texture = find_texture(texture_name)
-    photo = read_photo(file, max_pixels)
-    rows, columns = photo.values.shape
-    height = width * rows / columns
-    check_sheet(width, height, max_pixels)
-    if click.get_current_context().get_parameter_source("device_dpi") is ParameterSource.DEFAULT:
-        device_dpi = None if ending in ON_SCREEN else PRINTER_DPI
-    choice = None
-    if outlines:
-        least = math.floor(OUTLINE_LENGTH * max(rows, columns) + 0.5)
-        choice = OutlineChoice(pen or OUTLINE_PEN_PT, pen is not None, OUTLINE_STRENGTH, least)
-    with progress(5, "draw", quiet) as advance:
-        edges, reduced, grid = drawing.represented(photo, threads, advance)
-        if verbose:
-            options = click.get_current_context().params | {"device_dpi": device_dpi}
-            for line in _chain(file, output, ending, options, grid, choice, (rows, columns)):
-                click.echo(line, err=True)
-        if ending == ".penink":
-            own = "." in texture_name or "/" in texture_name
-            layer = Layer(
-                reduced, edges, texture, None if own else texture_name,
-                pen_pt=pen, gamma=gamma, seed=seed, outline=choice,
-            )  # fmt: skip
-            _write_illustration(output, Illustration(width, height, (layer,)))
+    if ending not in ENDINGS:
+        raise click.UsageError(f"-o {in_quotes(output or '')}: known endings are {', '.join(ENDINGS)}")
+    if width is not None and height is not None:
+        raise click.UsageError("give one of --width and --height")
+    own_texture = given.get("texture_name")
+    dashes = [path for path in (style_name, own_texture) if path == "-"]
+    only_one_standard_input(file, given.get("mask"), given.get("directions_file"), *dashes)
+    page = _page_words(ending, given)
+    style = find_style(style_name)
+    check(style, style_name)
+    stages = _told(style, given)
+    with bench() as files, progress(9, "draw", quiet) as advance:
+        shape = read_colours(file, max_pixels).values.shape
+        rows, columns = shape[:2]
+        if height is not None:
+            width = height * columns / rows
+        width = USUAL_WIDTH if width is None else width
+        check_sheet(width, width * rows / columns, max_pixels)
+        taken = (file, output, given.get("mask"), given.get("directions_file"), own_texture)
+        limit = max_pixels if "max_pixels" in given else None
+        say = (lambda line: click.echo(line, err=True)) if verbose else (lambda line: None)
+        chain = Chain(files, taken, threads, limit, say, lambda: advance(1))
+        device_dpi = given.get("device_dpi", None if ending in ON_SCREEN else PRINTER_DPI)
+        _Drawing(chain, stages, given, width, rows / columns, ending, device_dpi).draw(file, shape, output, page)
+
+
+def _is_given(context: click.Context, name: str) -> bool:
+    return context.get_parameter_source(name) is not ParameterSource.DEFAULT
+
+
+def _page_words(ending: str, given: dict[str, Any]) -> list[str]:
+    """What the filter that writes the picture is told of the page; UsageError where it knows no such thing."""
+    writer = {**OF_STROKES, **OF_ILLUSTRATIONS}.get(ending)
+    known = {parameter.name for parameter in found(writer).params} if writer else set()
+    words: list[str] = []
+    for name in ("paper", "margin", "landscape", "colours", "order"):
+        if name not in given:
+            continue
+        option = {"colours": "color"}.get(name, name)
+        if name not in known:
+            raise click.UsageError(f"--{option} is of no use for {ending}")
+        for value in given[name] if name == "colours" else (given[name],):
+            words += worded(option, value)
+    return words
+
+
+def _told(style: Style, given: dict[str, Any]) -> dict[str, dict[str, Value]]:
+    """The style's options, and those given before them."""
+    stages = {stage: dict(options) for stage, options in style.stages.items()}
+    for name in ("outline", "lines"):
+        wanted = given.get({"outline": "outlines"}.get(name, name))
+        if wanted is False:
+            stages.pop(name, None)
+        elif wanted:
+            stages.setdefault(name, {"min-strength": OUTLINE_STRENGTH} if name == "outline" else {})
+    stages.setdefault("compose", {"strength": 0.0})
+    if "strength" not in given and {"detail", "mix", "target"} & set(given) and stages["compose"].get("strength") == 0:
+        del stages["compose"]["strength"]  # who asks for a target asks for composing
+    stages.setdefault("blast", {})
+    for name, (stage, option) in _TOLD.items():
+        if name in given:
+            stages[stage][option] = worded(option, given[name])[1]
+    if "pen" in given:
+        for stage in ("blast", "outline", "lines"):
+            if stage in stages:
+                stages[stage]["pen"] = given["pen"]
+        if "lines" in stages:
+            stages["lines"]["even"] = True
+    return stages
+
+
+class _Drawing:
+    """One call of `draw`: the filters it runs, in their order."""
+
+    def __init__(
+        self, chain: Chain, stages: dict[str, dict[str, Value]], given: dict[str, Any], width: float, aspect: float,
+        ending: str, device_dpi: float | None,
+    ):  # fmt: skip
+        self.chain, self.stages, self.given, self.ending = chain, stages, given, ending
+        self.aspect = aspect
+        self.width = width
+        self.on_paper = ["--width", repr(width)]
+        self.device = ["--device-dpi", "none" if device_dpi is None else repr(device_dpi)]
+
+    def words(self, stage: str, filter_name: str) -> list[str]:
+        """What the stage's options say to the filter."""
+        return words(stage, filter_name, self.stages.get(stage, {}))
+
+    def run(self, filter_name: str, words: list[str], wanted: str) -> str:
+        """Run a filter whose result is handed on under that name, or one like it."""
+        name = self.chain.name(wanted)
+        self.chain.run(filter_name, words, name)
+        return name
+
+    def draw(self, file: str | None, shape: tuple[int, ...], output: str | None, page: list[str]) -> None:
+        """All of it."""
+        photo = [*shlex.split(photo_words()), "-" if file is None else file]
+        grey, size = self.composed(photo, shape)
+        edges = self.run("detect-edges", [*self.words("edges", "detect-edges"), grey], "e.json")
+        lines = None
+        if "lines" in self.stages:
+            lines = self.run("detect-lines", [*self.words("lines", "detect-lines"), *photo], "lines.json")
+        directions = self.directions(photo, edges, lines)
+        samples = self.run("extract-samples", ["-e", edges, grey], "samples.pgm")
+        if self.ending in OF_ILLUSTRATIONS:
+            self.illustrated(grey, size, edges, lines, directions, samples, output, page)
             return
-        for line in warnings(drawing.tone_curve(reduced, gamma), texture, pen, device_dpi):
-            warn(line)
-        outlined = drawing.outlined(edges, width, height, choice, device_dpi=device_dpi) if choice else None
-        grey = drawing.enlarged(reduced, edges, drawing.grey_size(width, rows / columns), threads)
-        advance(1)
-        hatched = drawing.blasted(
-            grey, width, edges, texture, seed=seed, pen_pt=pen, gamma=gamma, device_dpi=device_dpi, ink=outlined,
-            threads=threads,
-        )  # fmt: skip
-        advance(1)
-    WRITERS[ending](output, [hatched] if outlined is None else [hatched, outlined])
+        over = self.over(size, edges, lines)
+        from penink_cli.illustration.drawing import grey_size
 
-
-# ------------------------------------------------------------------- the picture, by its ending
-
-
-def _write_ps(output: str | None, layers: Sequence[Strokes]) -> None:
-    from penink_cli.outputs import postscript
-    from penink_cli.outputs.page import lay_out
-    from penink_cli.travel.order import ordered
-
-    with writing(output, binary=False) as out:
-        postscript.write(out, layers, lay_out(layers), order=partial(ordered, improve=False))
-
-
-def _write_svg(output: str | None, layers: Sequence[Strokes]) -> None:
-    from penink_cli.outputs import svg
-    from penink_cli.outputs.page import lay_out
-
-    layers = as_printed(layers, None)
-    with writing(output, binary=False) as out:
-        svg.write(out, layers, lay_out(layers))
-
-
-def _write_pdf(output: str | None, layers: Sequence[Strokes]) -> None:
-    from penink_cli.outputs import pdf
-    from penink_cli.outputs.page import lay_out
-
-    layers = as_printed(layers, None)
-    with writing(output) as out:
-        pdf.write(out, layers, lay_out(layers))
-
-
-def _write_png(output: str | None, layers: Sequence[Strokes]) -> None:
-    from penink_cli.outputs.page import lay_out
-    from penink_cli.outputs.raster import cover, png
-
-    layers = as_printed(layers, None)
-    page = lay_out(layers)
-    with writing(output) as out:
-        png.write(out, cover.size(page, PNG_DPI), PNG_DPI, 8, cover.bands(layers, page, PNG_DPI, 255, processors()))
-
-
-def _write_strokes(output: str | None, layers: Sequence[Strokes]) -> None:
-    from penink_cli.formats import strokes
-    from penink_cli.ground.model import Strokes
-
-    with writing(output, binary=False) as out:
-        strokes.write(out, Strokes.joined(layers))
-
-
-def _write_illustration(output: str | None, illustration: Illustration) -> None:
-    from penink_cli.formats import archive
-    from penink_cli.formats import illustration as illustration_format
-    from penink_cli.options.inputs import settled
-
-    with writing(output) as out:
-        out.write(archive.pack(illustration_format.members(settled(illustration))))
-
-
-WRITERS: dict[str, Callable[[str | None, Sequence[Strokes]], None]] = {
-    ".ps": _write_ps,
-    ".eps": _write_ps,
-    ".svg": _write_svg,
-    ".pdf": _write_pdf,
-    ".png": _write_png,
-    ".jsonl": _write_strokes,
-    ".penink": lambda output, layers: None,  # written before anything is drawn
-}
-
-
-# ------------------------------------------------------------------- the same by hand
-
-
-def _chain(
-    file: str | None, output: str | None, ending: str, options: dict[str, Any], grid: str,
-    choice: OutlineChoice | None, shape: tuple[int, int],
-) -> list[str]:  # fmt: skip
-    """The filters whose chain gives the same bytes, as one would type them."""
-    from penink_cli.illustration.drawing import grey_size
-
-    photo = shlex.quote(file or "-")
-    size = grey_size(options["width"], shape[0] / shape[1])
-    width = f"--width {options['width']!r}"
-    pen = "" if options["pen"] is None else f" --pen {options['pen']!r}"
-    blast = f"penink blast -e e.json --texture {shlex.quote(options['texture_name'])} {width}{pen}"
-    blast += f" --gamma {options['gamma']!r} --seed {options['seed']}"
-    device = f" --device-dpi {'none' if options['device_dpi'] is None else repr(options['device_dpi'])}"
-    blast += device
-    lines = [f"penink detect-edges {photo} -o e.json"]
-    samples = f"penink extract-samples -e e.json {photo} | penink reduce -e e.json {grid} --photo {photo}"
-    if ending == ".penink":
-        lines.append(f"{samples} -o samples.pgm")
-        return [*lines, "# and `penink pack` of an illustration.json that names both, the texture and the outlines"]
-    names = "hatching.jsonl"
-    if choice:
-        lines.append(
-            f"penink outline {width}{pen} --min-strength {choice.min_strength} --min-length {choice.min_length:g}"
-            f"{device} e.json -o outlines.jsonl"
+        across, down = grey_size(self.width, self.aspect)
+        enlarged = self.run("enlarge", ["-e", edges, "--size", f"{across}x{down}", "--soften", samples], "enlarged.pgm")
+        ink = [word for name in over for word in ("--ink", name)]
+        along = ["--directions", directions] if directions else []
+        white = ["--lines", lines] if lines else []
+        hatching = self.run(
+            "blast",
+            ["-e", edges, *self.on_paper, *self.device, *self.words("blast", "blast"), *along, *white, *ink, enlarged],
+            "hatching.jsonl",
         )
-        blast += " --ink outlines.jsonl"
-        names += " outlines.jsonl"
-    lines.append(
-        f"{samples} | penink enlarge -e e.json --size {size[0]}x{size[1]} --soften | {blast} -o hatching.jsonl"
-    )
-    command = {".svg": "to-svg", ".pdf": "to-pdf", ".png": "to-png"}.get(ending, "to-ps")
-    lines.append(f"penink {command} {names}" + (f" -o {shlex.quote(output)}" if output not in (None, "-") else ""))
-    return lines
+        if not any(self.chain.lines(name) > 1 for name in (hatching, *over)):
+            warn("a drawing without a stroke: the photo is paper white, or was made so")
+        if self.ending == STROKES:
+            self.chain.joined([hatching, *over], output)
+        else:
+            self.chain.run(OF_STROKES[self.ending], [*page, hatching, *over], output)
+
+    def composed(self, photo: list[str], shape: tuple[int, ...]) -> tuple[str, tuple[int, int]]:
+        """The grey of the drawing, and its width and height."""
+        from penink_cli.composition.compose import working_size
+
+        told = self.words("compose", "compose")
+        told += ["--mask", self.given["mask"]] if "mask" in self.given else []
+        dpi = COMPOSED_DPI
+        if self.ending in OF_ILLUSTRATIONS:
+            dpi = POSTER_DPI
+            told += ["--dpi", repr(dpi)]
+        grey = self.run("compose", [*self.on_paper, *told, *photo], "grey.pgm")
+        return grey, working_size(shape, self.width, dpi / 72)
+
+    def directions(self, photo: list[str], edges: str, lines: str | None) -> str | None:
+        """The field that is hatched along, if any."""
+        own = self.given.get("directions_file")
+        if own is None and ("directions" not in self.stages or not self.follows()):
+            return None
+        if own is not None and own.lower().endswith(".pgm"):
+            return own
+        told = self.words("directions", "detect-directions") if "directions" in self.stages else []
+        told += ["--lines", lines] if lines else []
+        told += ["--strokes", own] if own is not None else []
+        return self.run("detect-directions", ["-e", edges, *told, *photo], "directions.pgm")
+
+    def follows(self) -> bool:
+        """Whether the strokes of the texture can follow a field."""
+        from penink_cli.commands.blast import follows
+
+        blast = self.stages["blast"]
+        return follows(find_texture(str(blast.get("texture", "crosshatch"))), str(blast.get("rule", "best")))
+
+    def over(self, size: tuple[int, int], edges: str, lines: str | None) -> list[str]:
+        """Strokes over the hatching, which are ink before it is laid."""
+        result = []
+        if lines:
+            result.append(self.run("lines", [*self.on_paper, *self.words("lines", "lines"), lines], "lines.jsonl"))
+        if "outline" in self.stages:
+            least = [] if "min-length" in self.stages["outline"] else ["--min-length", str(_least_length(size))]
+            told = [*self.on_paper, *self.device, *self.words("outline", "outline"), *least]
+            result.append(self.run("outline", [*told, edges], "outlines.jsonl"))
+        return result
+
+    def illustrated(
+        self, grey: str, size: tuple[int, int], edges: str, lines: str | None, directions: str | None, samples: str,
+        output: str | None, page: list[str],
+    ) -> None:  # fmt: skip
+        """The illustration itself, or a page that draws it."""
+        reduced = self.chain.name("reduced.pgm")
+        reduce = ["-e", edges, "--photo", grey]
+        shrink = max(2.0, max(size) / DEVICE_SIDE)
+        smaller = f"{max(1, math.floor(size[0] / shrink))}x{max(1, math.floor(size[1] / shrink))}"
+        # a page draws itself, and no grid comes near to a photo of noise or fine texture: half of it is enough to hatch
+        if self.ending == ".html" or not self.chain.run("reduce", [*reduce, "--auto", samples], reduced, may_fail=True):
+            self.chain.run("reduce", [*reduce, "--size", smaller, samples], reduced)
+        blast = self.stages["blast"]
+        layer: dict[str, Any] = {"samples": reduced, "edges": edges, "texture": blast.get("texture", "crosshatch")}
+        if directions:
+            layer["directions"] = directions
+        for name in ("pen", "gamma", "seed", "rule"):
+            if name in blast:
+                layer[name] = _number(name, blast[name])
+        if "outline" in self.stages:
+            told = self.stages["outline"]
+            pen = told.get("pen", told.get("weight", 0.7))
+            layer["outline"] = {
+                "pen": _number("pen", pen),
+                "even": "pen" in told,
+                "min_strength": float(told.get("min-strength", 0)),
+                "min_length": float(told.get("min-length", _least_length(size))),
+            }
+        manifest = {"format": "penink-illustration", "version": 1, "width": self.width}
+        manifest |= {"height": self.width * self.aspect, "layers": [layer]}
+        name = self.chain.name("drawing.illustration.json")
+        self.chain.put(name, json.dumps(manifest) + "\n")
+        self.chain.run(OF_ILLUSTRATIONS[self.ending], [*page, name], output)
+
+
+def _least_length(size: tuple[int, int]) -> int:
+    """Pixels of the shortest chain of edges that is outlined."""
+    return math.floor(OUTLINE_LENGTH * max(size) + 0.5)
+
+
+def _number(name: str, value: Value) -> Value:
+    """The value of an option as a manifest has it: lengths in points."""
+    if name == "rule" or not isinstance(value, str):
+        return value
+    return parse_length(value) if name == "pen" else float(value) if name == "gamma" else int(value)

@@ -24,7 +24,7 @@ import sys
 import threading
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, BinaryIO, NoReturn
+from typing import TYPE_CHECKING, BinaryIO, NoReturn, cast
 
 from penink_cli.ground.errors import StreamError, printable
 
@@ -44,6 +44,9 @@ _closed: set[int] = set()  # descriptors 0-2 that the caller had closed
 _targets: dict[tuple[int, int], str] = {}  # device and inode of each file that this call replaces: its name
 
 
+_bench: dict[str, bytes] | None = None  # files that are not on any disk, by their names: see `workbench`
+
+
 def _why(error: OSError) -> str:
     return os.strerror(error.errno) if error.errno else str(error)
 
@@ -51,6 +54,29 @@ def _why(error: OSError) -> str:
 def source_name(path: str | None) -> str:
     """What error lines call this input: its path, or ``<stdin>``."""
     return STDIN if path is None or path == "-" else path
+
+
+# ---------------------------------------------------------------------------- files between filters of one process
+
+
+@contextmanager
+def workbench(files: dict[str, bytes]) -> Iterator[dict[str, bytes]]:
+    """While the block runs `reading` and `writing` take the names in this table for its entries, not for files.
+
+    So filters can be run one after another in one process as in a pipe: nothing is left behind when it is killed, and
+    no disk is too full. A name that is to be written is entered first, with anything.
+    """
+    global _bench  # noqa: PLW0603
+    before, _bench = _bench, files
+    try:
+        yield files
+    finally:
+        _bench = before
+
+
+def on_bench(path: str | None) -> bool:
+    """Whether this is the name of no file but of an entry of the workbench."""
+    return _bench is not None and path in _bench
 
 
 # ---------------------------------------------------------------------------- no output over an input
@@ -85,6 +111,8 @@ def _keep(status: os.stat_result, source: str) -> None:
 
 def _status(path: str | None, standard: int) -> os.stat_result | None:
     """What a path, or a standard descriptor, leads to; None where that is nothing yet."""
+    if on_bench(path):
+        return None
     if path is None or path == "-":
         descriptor: int | None = standard
     else:
@@ -133,6 +161,9 @@ def reading(path: str | None) -> Iterator[BinaryIO]:
     stream cannot seek, whatever it is: a filter reads its input once.
     """
     source = source_name(path)
+    if path is not None and _bench is not None and path in _bench:
+        yield cast(BinaryIO, io.BytesIO(_bench[path]))
+        return
     if path is None or path == "-":
         if _is_closed(0):
             raise StreamError("standard input is closed", source)
@@ -193,6 +224,22 @@ class Output:
         return StreamError(f"cannot be written: {_why(error)}", self._source)
 
 
+class _Kept(Output):
+    """An output that becomes an entry of the workbench."""
+
+    def __init__(self, source: str):
+        super().__init__(-1, source)
+        self._parts: list[bytes] = []
+
+    def _deliver(self, view: memoryview) -> None:
+        self._parts.append(bytes(view))
+
+    def whole(self) -> bytes:
+        """All that was written."""
+        self.flush()
+        return b"".join(self._parts)
+
+
 @contextmanager
 def writing(path: str | None, binary: bool = True) -> Iterator[Output]:
     """An output for ``path`` (None or ``-``: standard output) that is complete once the block has ended.
@@ -203,6 +250,11 @@ def writing(path: str | None, binary: bool = True) -> Iterator[Output]:
 
     Raises StreamError when the output cannot be opened, written, flushed or closed.
     """
+    if path is not None and _bench is not None and path in _bench:
+        kept = _Kept(path)
+        yield kept
+        _bench[path] = kept.whole()
+        return
     descriptor = 1 if path is None or path == "-" else _own_descriptor(path)
     if descriptor is not None:
         yield from _straight(descriptor, STDOUT if descriptor == 1 else str(path), binary)

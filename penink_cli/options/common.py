@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import math
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 import click
@@ -272,8 +273,29 @@ def reporter(verbose: bool) -> Callable[[str], None]:
     return (lambda line: click.echo(line, err=True)) if verbose else (lambda line: None)
 
 
-def warn(line: str) -> None:
-    """A line on standard error, with the command's name: the result is right, but perhaps not what was meant."""
+_warned: set[str] | None = None  # what has been warned of, where each thing is said once
+
+
+@contextlib.contextmanager
+def warning_once() -> Iterator[None]:
+    """While the block runs, what several filters of one process have to warn of is said by the first."""
+    global _warned  # noqa: PLW0603
+    before, _warned = _warned, set()
+    try:
+        yield
+    finally:
+        _warned = before
+
+
+def warn(line: str, about: str | None = None) -> None:
+    """A line on standard error, with the command's name: the result is right, but perhaps not what was meant.
+
+    about: what the line is about, where filters say it in different words.
+    """
+    if _warned is not None:
+        if (about or line) in _warned:
+            return
+        _warned.add(about or line)
     context = click.get_current_context(silent=True)
     click.echo(f"{context.command_path if context else 'penink'}: warning: {printable(line)}", err=True)
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 import os
 import re
 import shlex
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
@@ -28,6 +29,7 @@ ALPHA = "alpha"
 NAMED = {"white": (255, 255, 255), "black": (0, 0, 0), "grey": (128, 128, 128)}
 _OPTIONS = ("background", "profile", "strict", "lenient")
 _META = "penink.photo"
+_photos: dict[str | None, ColourImage | GreyImage] | None = None  # that are remembered, by their paths
 MAX_MEMBER = 1 << 28  # bytes of a file that a manifest names
 
 
@@ -151,10 +153,34 @@ def read_to_blast(path: str | None, max_pixels: int) -> GreyImage:
         return pgm.read_at_most(stream, streams.source_name(path), limit, max_pixels)
 
 
+@contextmanager
+def remembering_photos() -> Iterator[None]:
+    """While the block runs, a photograph that several filters of one process read is decoded once."""
+    global _photos  # noqa: PLW0603
+    before, _photos = _photos, {}
+    try:
+        yield
+    finally:
+        _photos = before
+
+
+def _remembered(path: str | None, read: Callable[[], ColourImage | GreyImage]) -> ColourImage | GreyImage:
+    if _photos is None:
+        return read()
+    key = None if path == "-" else path
+    if key not in _photos:
+        _photos[key] = read()
+    return _photos[key]
+
+
 def read_photo(path: str | None, max_pixels: int) -> GreyImage:
     """The grey of a photograph, in any of the photo formats, as `photo_options` say."""
     from penink_cli.formats import photo
+    from penink_cli.ground.model import ColourImage
 
+    known = None if _photos is None else _photos.get(None if path == "-" else path)
+    if known is not None:
+        return photo.grey_of(known) if isinstance(known, ColourImage) else known
     with streams.reading(path) as stream:
         return photo.read_grey(stream, streams.source_name(path), photo_limit(max_pixels), photo_choices(), warn)
 
@@ -163,8 +189,11 @@ def read_colours(path: str | None, max_pixels: int) -> GreyImage | ColourImage:
     """A photograph in its colours, in any of the photo formats, as `photo_options` say; grey where it has none."""
     from penink_cli.formats import photo
 
-    with streams.reading(path) as stream:
-        return photo.read_colours(stream, streams.source_name(path), photo_limit(max_pixels), photo_choices(), warn)
+    def read() -> ColourImage | GreyImage:
+        with streams.reading(path) as stream:
+            return photo.read_colours(stream, streams.source_name(path), photo_limit(max_pixels), photo_choices(), warn)
+
+    return read() if streams.on_bench(path) else _remembered(path, read)
 
 
 def read_image_or_strokes(path: str | None, max_pixels: int) -> GreyImage | Strokes:

@@ -34,4 +34,4 @@ def check_sheet(width_pt: float, height_pt: float, max_pixels: int | None = None
             raise LimitError(f"{size} on paper needs {pixels} pixels; at most {max_pixels} are allowed (--max-pixels)")
     if max(width_pt, height_pt) < SMALL_PT or min(width_pt, height_pt) < THIN_PT:
         size = f"{width_pt:.3g} × {height_pt:.3g} pt ({width_pt / MM:.2g} × {height_pt / MM:.2g} mm)"
-        warn(f"the drawing is {size} on paper, which shows little; a bare number is points, 72 to the inch")
+        warn(f"the drawing is {size} on paper, which shows little; a bare number is points, 72 to the inch", "sheet")

@@ -52,6 +52,7 @@ CALLS = {
     "to-html": Call("photo.illustration.json"),
     "measure": Call("photo.strokes.jsonl", ("--against", "samples.pgm")),
     "compare": Call("photo.strokes.jsonl", ("photo.strokes.jsonl",)),
+    "style": Call(None, ("show", "true")),
     "texture": Call(None, ("make", "brick", "--seed", "1")),
 }
 

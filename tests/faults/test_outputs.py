@@ -24,7 +24,7 @@ readers = pytest.mark.parametrize("name", [name for name, call in CALLS.items() 
 
 def one_line(err: bytes, name: str) -> str:
     """The one error line, after ``penink NAME: ``."""
-    name = {"texture": "texture make"}.get(name, name)
+    name = {"texture": "texture make", "style": "style show"}.get(name, name)
     text = err.decode()
     assert text.startswith(f"penink {name}: ") and text.endswith("\n") and text[:-1].isprintable(), text
     assert "internal error" not in text

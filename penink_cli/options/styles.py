@@ -1,0 +1,42 @@
+"""Finding a style by the value of ``--style``: one of the shipped ones by name, or a file."""
+
+from __future__ import annotations
+
+import io
+from importlib import resources
+from typing import TYPE_CHECKING
+
+from penink_cli.ground.errors import ParameterError, printable
+from penink_cli.ground.streams import reading, source_name
+from penink_cli.options.common import NameOrFile, is_file
+
+if TYPE_CHECKING:
+    from penink_cli.formats.style import Style
+
+ENDING = ".style.json"
+
+
+def shipped() -> list[str]:
+    """Names of the styles that come with the program."""
+    styles = resources.files("penink_cli.styles")
+    return sorted(f.name.removesuffix(ENDING) for f in styles.iterdir() if f.name.endswith(ENDING))
+
+
+STYLE = NameOrFile(shipped)
+
+
+def style_text(name: str) -> bytes:
+    """The file of a shipped style, as it is."""
+    if name not in shipped():
+        raise ParameterError(f"no style {printable(name, 60)}; known are {', '.join(shipped())}, or give a file")
+    return (resources.files("penink_cli.styles") / (name + ENDING)).read_bytes()
+
+
+def find_style(name: str) -> Style:
+    """The style of that name, or in that file (a name with a dot or a slash in it, or ``-``)."""
+    from penink_cli.formats import style
+
+    if is_file(name):
+        with reading(name) as stream:
+            return style.read(stream, source_name(name))
+    return style.read(io.BytesIO(style_text(name)), name + ENDING)

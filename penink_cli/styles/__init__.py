@@ -1,0 +1,1 @@
+"""The styles that come with the program, a `*.style.json` file each."""
