@@ -25,7 +25,7 @@ KERNELS = sorted((ROOT / "penink_cli").glob("**/_compiled/*.pyx"))
 
 @pytest.mark.parametrize("kernel", KERNELS, ids=lambda kernel: f"{kernel.parts[-3]}.{kernel.stem}")
 def test_each_kernel_was_found_by_the_build(kernel):
-    if {"avx2": 32, "avx512": 64}.get(kernel.stem.rpartition("_")[2], 0) > lanes.LANES:
+    if kernel.stem.endswith("_avx2") and lanes.VECTOR_BYTES < 32:
         pytest.skip("this processor cannot run it")
     module = importlib.import_module(".".join(kernel.relative_to(ROOT).with_suffix("").parts))
     assert not module.__file__.endswith((".py", ".pyx"))

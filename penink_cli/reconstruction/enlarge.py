@@ -19,8 +19,8 @@ from penink_cli.ground import threads as threading
 from penink_cli.ground.errors import ParameterError
 from penink_cli.ground.model import EdgeList, Floats, GreyImage
 from penink_cli.reconstruction import lanes
-from penink_cli.reconstruction._compiled import desk as _desk
 from penink_cli.reconstruction._compiled import render as _render
+from penink_cli.reconstruction._compiled import scratch as _scratch
 from penink_cli.reconstruction._compiled import search as _search
 from penink_cli.reconstruction._compiled import tile as _tile
 from penink_cli.reconstruction._compiled import weights as _weights
@@ -34,7 +34,7 @@ Window = tuple[int, int, int, int]
 Rows = npt.NDArray[Any]
 
 BAND = 1 << 20  # pixels of one band: small enough to be done soon, large enough to be worth a task
-SMALL = 1 << 22  # pixels without edges: they are done in less time than a second thread takes to start and to hand on
+SMALL = 1 << 22  # pixels without edges: they are done in less time than a second thread takes to start and to worker on
 
 
 def enlarge(
@@ -191,7 +191,7 @@ class _Enlargement:
             self.where = np.concatenate([x.taps.where, x.taps.where[-1:].repeat(TILE)])
             cell = np.concatenate([x.cell.repeat(np.diff(x.first)), x.cell[-1:].repeat(TILE)])
             self.offset = ((self.where - cell) / float(self.real.type(self.radius))).astype(self.real)
-            self.hands: list[tuple[_search.Finder, _tile.Tile, _desk.Desk]] = []
+            self.workers: list[tuple[_search.Finder, _tile.Tile, _scratch.Scratch]] = []
         if self.paths.empty and x.count * y.count < SMALL:
             threads = 1
         # Bands of whole tiles, as even as can be; where edges are near they take longer than elsewhere.
@@ -222,18 +222,18 @@ class _Enlargement:
         if not self.paths.empty:
             h = len(self.samples)
             try:
-                hand = self.hands.pop()  # atomic, as giving it back is
+                worker = self.workers.pop()  # atomic, as giving it back is
             except IndexError:
-                hand = self._hand()
-            finder, tile, desk = hand
+                worker = self._worker()
+            finder, tile, scratch = worker
             finder.move(min(max(source, 0), h - 1), max(1, min(last, h)))
             _render.retouch(
-                tile, desk, self.samples, self.where, self.offset, *self.x_taps, x.cell, x.first,
+                tile, scratch, self.samples, self.where, self.offset, *self.x_taps, x.cell, x.first,
                 y.taps.where[begin:end], self.y_taps[0][begin:end], self.y_taps[1][begin:end],
                 y.cell[a:b], y.first[a : b + 1] - y.first[a],
                 out,
             )  # fmt: skip
-            self.hands.append(hand)
+            self.workers.append(worker)
         if self.into is not None:
             return out
         left, top, width, height = self.window
@@ -241,13 +241,13 @@ class _Enlargement:
             max(0, top - y.begin - begin) : top + height - y.begin - begin, left - x.begin : left - x.begin + width
         ]
 
-    def _hand(self) -> tuple[_search.Finder, _tile.Tile, _desk.Desk]:
+    def _worker(self) -> tuple[_search.Finder, _tile.Tile, _scratch.Scratch]:
         """What one thread at a time works with: a search, and room for a tile and for its numbers."""
         finder = self.paths.finder(closed=True, rows=(0, 0))
         tile = _tile.Tile(finder, self.x.step, self.y.step, 1 + spill(self.radius))
-        desk = _desk.Desk(self.real == np.float32, self.stored.itemsize, self.radius, self.only_b, self.maxval)
-        lanes.furnish(tile, desk)
-        return finder, tile, desk
+        scratch = _scratch.Scratch(self.real == np.float32, self.stored.itemsize, self.radius, self.only_b, self.maxval)
+        lanes.bind(tile, scratch)
+        return finder, tile, scratch
 
 
 @dataclass(eq=False)

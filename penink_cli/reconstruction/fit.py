@@ -25,9 +25,9 @@ from penink_cli.ground import threads as threading
 from penink_cli.ground.model import EdgeList, Floats
 from penink_cli.reconstruction import lanes
 from penink_cli.reconstruction._compiled import banded as _banded
-from penink_cli.reconstruction._compiled import desk as _desk
 from penink_cli.reconstruction._compiled import fit as _fit
 from penink_cli.reconstruction._compiled import rows as _rows
+from penink_cli.reconstruction._compiled import scratch as _scratch
 from penink_cli.reconstruction._compiled import tile as _tile
 from penink_cli.reconstruction.lattice import Axis, axis
 from penink_cli.reconstruction.paths import Paths, spill
@@ -135,14 +135,14 @@ def fit_samples(
     return out
 
 
-class _Hand:
+class _Worker:
     """What one thread at a time works with: a search, room for a tile and its numbers, and for those of a block."""
 
     def __init__(self, paths: Paths, step_x: float, step_y: float) -> None:
         self.finder = paths.finder(closed=True, rows=(0, 0))
         self.tile = _tile.Tile(self.finder, step_x, step_y, 1 + spill(1.0))
-        self.desk = _desk.Desk(True)
-        lanes.furnish(self.tile, self.desk)
+        self.scratch = _scratch.Scratch(True)
+        lanes.bind(self.tile, self.scratch)
         self.numbers = np.empty(0, np.float32)
 
     def room(self, *shapes: tuple[int, ...]) -> list[Grey32]:
@@ -175,7 +175,7 @@ class _Fit:
         self.x_base, self.x_plain = _plain_rows(self.x, self.width, fine)
         self.y_base, self.y_plain = _plain_rows(self.y, self.height, fine)
         self.side = max(8, round(_BLOCK_PX * self.width / w))
-        self.hands: list[_Hand] = []
+        self.workers: list[_Worker] = []
 
     def run(self, out: Floats, threads: int) -> None:
         """Fit every block into out."""
@@ -186,19 +186,19 @@ class _Fit:
         bottom = min(self.height, top + self.side)
         first, last = max(0, top - _HALO), min(self.height, bottom + _HALO)
         try:
-            hand = self.hands.pop()  # atomic, as giving it back is
+            worker = self.workers.pop()  # atomic, as giving it back is
         except IndexError:
-            hand = _Hand(self.paths, self.x.step, self.y.step)
-        hand.finder.move(max(0, first - _HALO), min(self.height, last + _HALO))
+            worker = _Worker(self.paths, self.x.step, self.y.step)
+        worker.finder.move(max(0, first - _HALO), min(self.height, last + _HALO))
         for left in range(0, self.width, self.side):
-            self.block(hand, (top, bottom, first, last), left, min(self.width, left + self.side), out)
-        self.hands.append(hand)
+            self.block(worker, (top, bottom, first, last), left, min(self.width, left + self.side), out)
+        self.workers.append(worker)
 
-    def block(self, hand: _Hand, band: tuple[int, int, int, int], left: int, right: int, out: Floats) -> None:
+    def block(self, worker: _Worker, band: tuple[int, int, int, int], left: int, right: int, out: Floats) -> None:
         """Fit one block, if an edge is near it."""
         top, bottom, first, last = band
         begin, end = max(0, left - _HALO), min(self.width, right + _HALO)
-        if _rows.clear(hand.tile, left - _NEAR, top - _NEAR, right + _NEAR, bottom + _NEAR):
+        if _rows.clear(worker.tile, left - _NEAR, top - _NEAR, right + _NEAR, bottom + _NEAR):
             return
         if self.crowds[first:last, begin:end].sum() > _CROWDED * (last - first) * (end - begin):
             return
@@ -207,11 +207,11 @@ class _Fit:
             return
         pixels = rows[1] - rows[0], columns[1] - columns[0]
         samples = max(_SPAN, last - first), max(_SPAN, end - begin)
-        weight, values, steps, seen = hand.room((*pixels, _SPAN * _SPAN), samples, (3, *samples), (2, *pixels))
+        weight, values, steps, seen = worker.room((*pixels, _SPAN * _SPAN), samples, (3, *samples), (2, *pixels))
         x, y = self.x, self.y
         tiles = np.array([*_tiles(y, *rows, self.fine), *_tiles(x, *columns, self.fine)], np.int32)
         matters = _rows.rows(
-            hand.tile, hand.desk, x.taps.where, x.taps.cubic, x.taps.bspline, x.cell, x.first,
+            worker.tile, worker.scratch, x.taps.where, x.taps.cubic, x.taps.bspline, x.cell, x.first,
             y.taps.where, y.taps.cubic, y.taps.bspline, y.cell, y.first,
             tiles, np.array([rows[0], columns[0]], np.int32), self.fine,
             self.x_base, self.y_base, self.x_plain, self.y_plain, weight,

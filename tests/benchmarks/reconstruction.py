@@ -178,7 +178,7 @@ def stages(image, edges, size) -> dict[str, float]:
     """Processor time of the stages of one call on one thread; that of the paths is within that of the sums."""
     spent = dict.fromkeys(STAGES, 0.0)
     separable = lanes.kernel("separable")
-    hand = enlarging._Enlargement._hand
+    worker = enlarging._Enlargement._worker
     at_rest = False
 
     def timed(stage, whole):
@@ -191,16 +191,16 @@ def stages(image, edges, size) -> dict[str, float]:
         return run
 
     def given(work):
-        finder, tile, desk = hand(work)
+        finder, tile, scratch = worker(work)
         if at_rest:
-            desk.rest()
-        return mock.Mock(move=timed("bends", finder.move)), tile, desk
+            scratch.rest()
+        return mock.Mock(move=timed("bends", finder.move)), tile, scratch
 
     with (
         mock.patch.object(enlarging, "Paths", timed("preprocessing", Paths)),
         mock.patch.object(separable, "expand", timed("plain pass", separable.expand)),
         mock.patch.object(separable, "combine", timed("plain pass", separable.combine)),
-        mock.patch.object(enlarging._Enlargement, "_hand", given),
+        mock.patch.object(enlarging._Enlargement, "_worker", given),
         mock.patch.object(_render, "retouch", timed("sums", _render.retouch)),
     ):
         enlarge(image, edges, size, size, threads=1)
@@ -333,9 +333,9 @@ TABLE_1 = [  # figure, samples, edges, output, the paper's seconds for preproces
     ("3a pepper", (102, 128), 270, (204, 256), 39, 3),
     ("3b pepper", (102, 128), 270, (408, 512), 39, 35),
     ("3c pepper", (102, 128), 270, (816, 1024), 39, 108),
-    ("4a hand", (64, 64), 0, (1024, 1024), 0, 3),
+    ("4a worker", (64, 64), 0, (1024, 1024), 0, 3),
     ("4a egg", (128, 128), 0, (1024, 1024), 0, 4),
-    ("4b hand", (64, 64), 237, (1024, 1024), 19, 130),
+    ("4b worker", (64, 64), 237, (1024, 1024), 19, 130),
     ("4b egg", (128, 128), 143, (1024, 1024), 8, 41),
     ("5 keys", (128, 128), 504, (1024, 1024), 220, 142),
     ("5 shadow", (64, 64), 111, (1024, 1024), 3, 100),

@@ -212,7 +212,7 @@ def test_no_byte_depends_on_threads_bands_or_window(picture, soften, size, maxva
 
 @pytest.mark.parametrize("maxval", [255, 65535])
 def test_no_byte_depends_on_how_many_numbers_the_processor_computes_at_once(picture, maxval, monkeypatch):
-    makes = sorted(width for width in lanes.MAKES["sums"] if width <= lanes.LANES)
+    makes = sorted(width for width in lanes.MAKES["sums"] if width <= lanes.VECTOR_BYTES)
     if len(makes) == 1:
         pytest.skip("this processor has neither AVX2 nor AVX-512")
     image, edges = picture
@@ -222,7 +222,7 @@ def test_no_byte_depends_on_how_many_numbers_the_processor_computes_at_once(pict
                           ((31, 700), {"kernel": "bspline"})):  # fmt: skip
             found = []
             for width in makes:
-                monkeypatch.setattr(lanes, "LANES", width)
+                monkeypatch.setattr(lanes, "VECTOR_BYTES", width)
                 found.append(enlarge(image, arrangement, *size, maxval=maxval, **way).values)
             assert all(np.array_equal(values, found[0]) for values in found), (size, way)
 

@@ -57,7 +57,7 @@ cdef class Settler(View):
         cdef bint unchanged
         cdef int turn
         self.best.take(self.given)
-        self.left_over = self.look(self.best)
+        self.left_over = self.render(self.best)
         self.trust = fmin(1.0, _FLAT * self.pixels * self.floor / fmax(1e-12, self.left_over))
         best_score = self.settled(self.best, 0, -1, INFINITY)
         if best_score == INFINITY:
@@ -166,7 +166,7 @@ cdef class Settler(View):
         """Try a vertex more in an edge: in its middle, or, where it leads out of view, close to the end in view."""
         cdef int e, a, b
         cdef double length
-        self.left_over = self.look(self.best)
+        self.left_over = self.render(self.best)
         for e in range(self.best.edges):
             a = self.best.a[e]
             b = self.best.b[e]
@@ -187,7 +187,7 @@ cdef class Settler(View):
         cdef double rest = self.left_over / self.pixels + self.floor
         if self.best.edges == MOST_EDGES:
             return
-        gain = fmin(self.left_over, _OPTIMISM * self.promise(self.best, e, part)) / self.pixels
+        gain = fmin(self.left_over, _OPTIMISM * self.predicted_gain(self.best, e, part)) / self.pixels
         if self.pixels * logarithm(rest / (rest - gain)) < VERTEX:
             return
         self.other.take(self.best)
@@ -200,7 +200,7 @@ cdef class Settler(View):
             self.other.free[v] = True
             self.other.split(e, v)
             self.consider(_GLANCE, v)
-            self.look(self.best)
+            self.render(self.best)
 
     cdef void drop(self) noexcept nogil:
         """Try a vertex of two edges less, where both are in view: outside much tells against it."""
@@ -221,7 +221,7 @@ cdef class Settler(View):
         cdef double rest
         cdef int u, v
         cdef double wanted = self.wanted
-        self.left_over = self.look(self.best)
+        self.left_over = self.render(self.best)
         rest = self.left_over / self.pixels
         self.wanted += self.pixels * logarithm((_EXPLAINED * rest + self.floor) / (rest + self.floor)) - _MARGIN
         for u in range(self.best.vertices):
@@ -241,7 +241,7 @@ cdef class Settler(View):
                     self.other.edge(u, v, NEW, -1)
                     self.other.count()
                     self.consider(_GLANCE, u)
-                    self.look(self.best)
+                    self.render(self.best)
         self.wanted = wanted
 
     cdef double contrast(self, int u, int v) noexcept nogil:
@@ -259,5 +259,5 @@ cdef class Settler(View):
                 y = self.best.y[u] + (k + 0.5) / n * (self.best.y[v] - self.best.y[u]) + side * ny - self.top
                 i = min(self.last_row - 1, max(self.first_row, <int>floor(y)))
                 j = min(self.last_column - 1, max(self.first_column, <int>floor(x)))
-                total += side * self.rest[i, j]
+                total += side * self.residual[i, j]
         return total * total / (2 * n) if fabs(total) > _STEP * n else 0.0

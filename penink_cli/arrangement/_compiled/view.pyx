@@ -167,7 +167,7 @@ cdef class View(Window):
             if k >= 0:
                 x = place.x[v] - self.left
                 y = place.y[v] - self.top
-                held = &self.held[k, 0]
+                held = &self.prior[k, 0]
                 held[0] = held[2] = w
                 held[1] = 0.0
                 held[3] = w * x
@@ -180,7 +180,7 @@ cdef class View(Window):
             for end in range(2):
                 k = self.number[place.b[e] if end else place.a[e]]
                 if k >= 0:
-                    held = &self.held[k, 0]
+                    held = &self.prior[k, 0]
                     w = line[3]
                     held[0] += w * line[0] * line[0]
                     held[1] += w * line[0] * line[1]

@@ -9,16 +9,16 @@ cdef class Window(Regions):
     cdef double spread
     cdef int moved
     cdef int[MOST_VERTICES] number
-    cdef double[:, ::1] rest, normal, held, way, change
-    cdef double[::1] right, grey, slope
+    cdef double[:, ::1] residual, normal_matrix, prior, step, response
+    cdef double[::1] right_hand_side, grey, gradient
     cdef bint enumerate(self, Place place, int centre) noexcept nogil
     cdef int open(self, int top, int left, int bottom, int right, int halo) noexcept nogil
-    cdef void gather(self, int unknown) noexcept nogil
+    cdef void accumulate(self, int unknown) noexcept nogil
     cdef void solve(self, int unknown) noexcept nogil
-    cdef double look(self, Place place) noexcept nogil
+    cdef double render(self, Place place) noexcept nogil
     cdef double grey_at(self, double x, double y) noexcept nogil
-    cdef void yields(self, Place place, int base) noexcept nogil
-    cdef double promise(self, Place place, int e, double part) noexcept nogil
+    cdef void jacobian(self, Place place, int base) noexcept nogil
+    cdef double predicted_gain(self, Place place, int e, double part) noexcept nogil
     cdef double bell(self, double d) noexcept nogil
-    cdef double held_cost(self, Place place) noexcept nogil
+    cdef double prior_cost(self, Place place) noexcept nogil
     cdef double settle(self, Place place, Place trial, int rounds, double wanted) noexcept nogil

@@ -15,37 +15,42 @@ cdef double _LONGEST = 0.8  # pixels that a vertex goes in one step
 
 
 cdef class Window(Regions):
-    """A window of a photo, rendered from edges: regions of one grey each over a common slope, blurred.
+    """A window of a photo and a least-squares model of it: regions of one grey each over a common slope, blurred.
 
-    photo: (h, w) grey; taps: as of `Regions`; spread: standard deviation of the camera's blur and a pixel's
-    width together, in pixels.
-    number: of each vertex of the place among those that are moved, -1 for the others; moved: how many those are.
-    held: (MOST_MOVED, 6) what is known of each otherwise, as A (xx, xy, yy), b (x, y) and c of a cost
-    xᵀ A x − 2 bᵀ x + c in grey², x counted from the window's corner.
-    rest: what the greys do not explain. normal, right: the equations for greys and moves. slope: what `right` was
-    of the moves. way: the moves. change: what a bend would add to the picture.
+    The unknowns u are first the greys of the regions and the two slopes, then the x and y of each vertex that moves.
+    J is the picture's Jacobian in them, r the residual; a Gauss-Newton step solves (JᵀJ + A) u = Jᵀr + b − Ax.
+
+    photo: (h, w) grey 0 … 1. taps: as of `Regions`. spread: standard deviation of the camera's blur and a pixel's width
+    together, pixels.
+    number: (vertices of the place,) of each its number k among those that move, −1 for the others; moved: how many do.
+    design: (rows, columns, unknowns) J, of `Regions`.
+    residual: (rows, columns) r, photo less picture. normal_matrix: (unknowns, unknowns) JᵀJ, its upper triangle.
+    right_hand_side: (unknowns,) Jᵀr; `solve` leaves the solution there. gradient: (2 moved,) its part of the vertices.
+    prior: (moved, 6) what is known of each vertex otherwise, as A (xx, xy, yy), b (x, y) and c of a cost
+    xᵀ A x − 2 bᵀ x + c in grey², x pixels from the window's corner.
+    step: (moved, 2) the step of each vertex, pixels. response: (rows, columns) what a unit bend adds to the picture.
     """
 
     def __init__(self, float[:, ::1] photo, double[::1] taps, double spread):
         Regions.__init__(self, taps)
         self.photo, self.spread = photo, spread
-        self.rest = np.zeros((MOST_SIDE, MOST_SIDE), np.float64)
-        self.normal = np.zeros((MOST_UNKNOWN, MOST_UNKNOWN), np.float64)
-        self.right = np.zeros(MOST_UNKNOWN, np.float64)
+        self.residual = np.zeros((MOST_SIDE, MOST_SIDE), np.float64)
+        self.normal_matrix = np.zeros((MOST_UNKNOWN, MOST_UNKNOWN), np.float64)
+        self.right_hand_side = np.zeros(MOST_UNKNOWN, np.float64)
         self.grey = np.zeros(MOST_UNKNOWN, np.float64)
-        self.held = np.zeros((MOST_MOVED, 6), np.float64)
-        self.change = np.zeros((MOST_SIDE, MOST_SIDE), np.float64)
-        self.slope = np.zeros(2 * MOST_MOVED, np.float64)
-        self.way = np.zeros((MOST_MOVED, 2), np.float64)
+        self.prior = np.zeros((MOST_MOVED, 6), np.float64)
+        self.response = np.zeros((MOST_SIDE, MOST_SIDE), np.float64)
+        self.gradient = np.zeros(2 * MOST_MOVED, np.float64)
+        self.step = np.zeros((MOST_MOVED, 2), np.float64)
 
     def fitted(self, Place place, window: tuple, int halo, int rounds, held: tuple = ()) -> float:
         """What `settle` leaves over when it sees the window (top, left, bottom, right), one row of `held` a vertex."""
         top, left, bottom, right = window
         self.open(top, left, bottom, right, halo)
-        self.held[:, :] = 0.0
+        self.prior[:, :] = 0.0
         for k, known in enumerate(held):
             for i in range(6):
-                self.held[k, i] = known[i]
+                self.prior[k, i] = known[i]
         return self.settle(place, Place(), rounds, INFINITY) if self.enumerate(place, -1) else -1.0
 
     cdef bint enumerate(self, Place place, int centre) noexcept nogil:
@@ -78,53 +83,53 @@ cdef class Window(Regions):
         self.last_column = self.columns - (0 if right >= width else halo)
         return (self.last_row - self.first_row) * (self.last_column - self.first_column)
 
-    cdef void gather(self, int unknown) noexcept nogil:
-        """The normal equations of `rest` in the design's columns."""
+    cdef void accumulate(self, int unknown) noexcept nogil:
+        """Normal matrix and right-hand side of the residual, in the first columns of the design."""
         cdef int i, j, a, b
-        cdef double v, rest
+        cdef double v, residual
         # Arrays of its own, which the compiler knows to be apart: a third faster.
-        cdef double[EQUATIONS] normal
-        cdef double[MOST_UNKNOWN] right, pixel
+        cdef double[EQUATIONS] matrix
+        cdef double[MOST_UNKNOWN] vector, row
         for a in range(unknown):
-            right[a] = 0.0
+            vector[a] = 0.0
             for b in range(a, unknown):
-                normal[a * MOST_UNKNOWN + b] = 0.0
+                matrix[a * MOST_UNKNOWN + b] = 0.0
         for i in range(self.first_row, self.last_row):
             for j in range(self.first_column, self.last_column):
-                rest = self.rest[i, j]
+                residual = self.residual[i, j]
                 for a in range(unknown):
-                    pixel[a] = self.design[i, j, a]
+                    row[a] = self.design[i, j, a]
                 for a in range(unknown):
-                    v = pixel[a]
+                    v = row[a]
                     if v == 0.0:
                         continue
-                    right[a] += v * rest
+                    vector[a] += v * residual
                     for b in range(a, unknown):
-                        normal[a * MOST_UNKNOWN + b] += v * pixel[b]
+                        matrix[a * MOST_UNKNOWN + b] += v * row[b]
         for a in range(unknown):
-            self.right[a] = right[a]
+            self.right_hand_side[a] = vector[a]
             for b in range(a, unknown):
-                self.normal[a, b] = normal[a * MOST_UNKNOWN + b]
-            self.normal[a, a] += _RIDGE
+                self.normal_matrix[a, b] = matrix[a * MOST_UNKNOWN + b]
+            self.normal_matrix[a, a] += _RIDGE
 
     cdef void solve(self, int unknown) noexcept nogil:
-        """Solve them, into `right`."""
+        """Solve the normal equations by L D Lᵀ; `right_hand_side` becomes the solution."""
         cdef int k, a, b
         cdef double v
-        for a in range(unknown):  # L D Lᵀ
+        for a in range(unknown):
             for b in range(a + 1, unknown):
-                v = self.normal[a, b] / self.normal[a, a]
+                v = self.normal_matrix[a, b] / self.normal_matrix[a, a]
                 for k in range(b, unknown):
-                    self.normal[b, k] -= v * self.normal[a, k]
-                self.right[b] -= v * self.right[a]
+                    self.normal_matrix[b, k] -= v * self.normal_matrix[a, k]
+                self.right_hand_side[b] -= v * self.right_hand_side[a]
         for a in range(unknown - 1, -1, -1):
-            v = self.right[a]
+            v = self.right_hand_side[a]
             for b in range(a + 1, unknown):
-                v -= self.normal[a, b] * self.right[b]
-            self.right[a] = v / self.normal[a, a]
+                v -= self.normal_matrix[a, b] * self.right_hand_side[b]
+            self.right_hand_side[a] = v / self.normal_matrix[a, a]
 
-    cdef double look(self, Place place) noexcept nogil:
-        """Render with the best greys; what is left of the photo stays in `rest`. Its square, negative for none."""
+    cdef double render(self, Place place) noexcept nogil:
+        """Render with the best greys: the sum of squares of the residual; negative where there are too many regions."""
         cdef int i, j, k, unknown
         cdef double v
         cdef double total = 0.0
@@ -134,17 +139,17 @@ cdef class Window(Regions):
         unknown = self.regions + 2
         for i in range(self.first_row, self.last_row):
             for j in range(self.first_column, self.last_column):
-                self.rest[i, j] = self.photo[self.top + i, self.left + j] - 0.5
-        self.gather(unknown)
+                self.residual[i, j] = self.photo[self.top + i, self.left + j] - 0.5
+        self.accumulate(unknown)
         self.solve(unknown)
         for k in range(unknown):
-            self.grey[k] = self.right[k]
+            self.grey[k] = self.right_hand_side[k]
         for i in range(self.first_row, self.last_row):
             for j in range(self.first_column, self.last_column):
-                v = self.rest[i, j]
+                v = self.residual[i, j]
                 for k in range(unknown):
                     v -= self.design[i, j, k] * self.grey[k]
-                self.rest[i, j] = v
+                self.residual[i, j] = v
                 total += v * v
         return total
 
@@ -152,8 +157,8 @@ cdef class Window(Regions):
         """The grey of the region at a place in the window (pixels)."""
         return self.grey[self.region_at(x, y)]
 
-    cdef void yields(self, Place place, int base) noexcept nogil:
-        """The design's columns from base on: how the picture changes as vertices move, x and y of each.
+    cdef void jacobian(self, Place place, int base) noexcept nogil:
+        """The Jacobian in the vertices' x and y: the design's columns from `base` on.
 
         An edge that goes sideways by δ adds δ times the step across it, blurred, all along it; what a vertex's
         moving gives a point of its edge fades linearly towards the other end.
@@ -205,10 +210,10 @@ cdef class Window(Regions):
                             self.design[i, j, base + 2 * b] += v * over[j] * t * (-dy / length)
                             self.design[i, j, base + 2 * b + 1] += v * over[j] * t * (dx / length)
 
-    cdef double promise(self, Place place, int e, double part) noexcept nogil:
+    cdef double predicted_gain(self, Place place, int e, double part) noexcept nogil:
         """How much a bend at that part of an edge's way would explain, if what it changes were linear in its size.
 
-        `rest` must be what the place leaves over.
+        `residual` must be that of the place.
         """
         cdef int i, j, k
         cdef double t, x, y, v, weight
@@ -222,7 +227,7 @@ cdef class Window(Regions):
         cdef int reach = 1 + <int>(3.465 * self.spread)
         for i in range(self.first_row, self.last_row):
             for j in range(self.first_column, self.last_column):
-                self.change[i, j] = 0.0
+                self.response[i, j] = 0.0
         for k in range(n):
             t = (k + 0.5) / n
             x = x0 + t * dx
@@ -235,11 +240,11 @@ cdef class Window(Regions):
             for i in range(max(self.first_row, <int>y - reach), min(self.last_row, <int>y + reach + 1)):
                 v = weight * self.bell(fabs(i + 0.5 - y))
                 for j in range(max(self.first_column, <int>x - reach), min(self.last_column, <int>x + reach + 1)):
-                    self.change[i, j] += v * self.bell(fabs(j + 0.5 - x))
+                    self.response[i, j] += v * self.bell(fabs(j + 0.5 - x))
         for i in range(self.first_row, self.last_row):
             for j in range(self.first_column, self.last_column):
-                product += self.change[i, j] * self.rest[i, j]
-                square += self.change[i, j] * self.change[i, j]
+                product += self.response[i, j] * self.residual[i, j]
+                square += self.response[i, j] * self.response[i, j]
         return product * product / square if square > 0 else 0.0
 
     cdef inline double bell(self, double d) noexcept nogil:
@@ -251,7 +256,7 @@ cdef class Window(Regions):
             return (2 - d) * (2 - d) * (2 - d) * 0.24077
         return (4 - 6 * d * d + 3 * d * d * d) * 0.24077
 
-    cdef double held_cost(self, Place place) noexcept nogil:
+    cdef double prior_cost(self, Place place) noexcept nogil:
         """What it costs that vertices are where they are."""
         cdef int v, k
         cdef double x, y
@@ -261,62 +266,62 @@ cdef class Window(Regions):
             if k >= 0:
                 x = place.x[v] - self.left
                 y = place.y[v] - self.top
-                total += self.held[k, 0] * x * x + 2 * self.held[k, 1] * x * y + self.held[k, 2] * y * y
-                total += self.held[k, 5] - 2 * (self.held[k, 3] * x + self.held[k, 4] * y)
+                total += self.prior[k, 0] * x * x + 2 * self.prior[k, 1] * x * y + self.prior[k, 2] * y * y
+                total += self.prior[k, 5] - 2 * (self.prior[k, 3] * x + self.prior[k, 4] * y)
         return total
 
     cdef double settle(self, Place place, Place trial, int rounds, double wanted) noexcept nogil:
-        """Move vertices to where the rendered window is most like the photo (Gauss and Newton's steps).
+        """Move vertices to where the rendered window is most like the photo, by Gauss-Newton steps.
 
         Those of `number` move; `trial` is room to work in. Returns the sum of squares that is left unexplained and
-        what `held` says; negative where there are too many regions. Gives up where that will not be as low as wanted.
+        what `prior` says; negative where there are too many regions. Gives up where that will not be as low as wanted.
         """
         cdef int v, k, axis, base, at
-        cdef double x, y, far, part
-        cdef double best = self.look(place)
+        cdef double x, y, predicted, length, part, before
+        cdef double best = self.render(place)
         cdef double found = best
         if best < 0:
             return best
-        best += self.held_cost(place)
+        best += self.prior_cost(place)
         trial.take(place)
         for _ in range(rounds):
             base = self.regions + 2
-            self.yields(trial, base)
-            self.gather(base + 2 * self.moved)
+            self.jacobian(trial, base)
+            self.accumulate(base + 2 * self.moved)
             for v in range(place.vertices):
                 k = self.number[v]
                 if k >= 0:
                     at = base + 2 * k
                     x = place.x[v] - self.left
                     y = place.y[v] - self.top
-                    self.normal[at, at] += self.held[k, 0]
-                    self.normal[at, at + 1] += self.held[k, 1]
-                    self.normal[at + 1, at + 1] += self.held[k, 2]
-                    self.right[at] += self.held[k, 3] - self.held[k, 0] * x - self.held[k, 1] * y
-                    self.right[at + 1] += self.held[k, 4] - self.held[k, 1] * x - self.held[k, 2] * y
+                    self.normal_matrix[at, at] += self.prior[k, 0]
+                    self.normal_matrix[at, at + 1] += self.prior[k, 1]
+                    self.normal_matrix[at + 1, at + 1] += self.prior[k, 2]
+                    self.right_hand_side[at] += self.prior[k, 3] - self.prior[k, 0] * x - self.prior[k, 1] * y
+                    self.right_hand_side[at + 1] += self.prior[k, 4] - self.prior[k, 1] * x - self.prior[k, 2] * y
             for k in range(2 * self.moved):
-                self.slope[k] = self.right[base + k]
+                self.gradient[k] = self.right_hand_side[base + k]
             self.solve(base + 2 * self.moved)
-            far = 0.0  # by how much it would become less, if it were linear
+            predicted = 0.0  # by how much it would become less, if it were linear
             for k in range(2 * self.moved):
-                far += self.slope[k] * self.right[base + k]
-            if best - _OPTIMISM * far > wanted:
+                predicted += self.gradient[k] * self.right_hand_side[base + k]
+            if best - _OPTIMISM * predicted > wanted:
                 break
             for k in range(self.moved):
-                far = sqrt(self.right[base + 2 * k] ** 2 + self.right[base + 2 * k + 1] ** 2)
-                part = min(1.0, _LONGEST / max(far, 1e-9))
+                length = sqrt(self.right_hand_side[base + 2 * k] ** 2 + self.right_hand_side[base + 2 * k + 1] ** 2)
+                part = min(1.0, _LONGEST / max(length, 1e-9))
                 for axis in range(2):
-                    self.way[k, axis] = part * self.right[base + 2 * k + axis]
-            part = 1.0
+                    self.step[k, axis] = part * self.right_hand_side[base + 2 * k + axis]
+            part = 1.0  # of the step: all, or half if all makes it worse
             while part > 0.4:
                 for v in range(place.vertices):
                     k = self.number[v]
                     if k >= 0:
-                        trial.x[v] = place.x[v] + part * self.way[k, 0]
-                        trial.y[v] = place.y[v] + part * self.way[k, 1]
-                found = self.look(trial)
+                        trial.x[v] = place.x[v] + part * self.step[k, 0]
+                        trial.y[v] = place.y[v] + part * self.step[k, 1]
+                found = self.render(trial)
                 if found >= 0:
-                    found += self.held_cost(trial)
+                    found += self.prior_cost(trial)
                     if found < best:
                         break
                 part *= 0.5
@@ -325,8 +330,7 @@ cdef class Window(Regions):
             for v in range(place.vertices):
                 place.x[v] = trial.x[v]
                 place.y[v] = trial.y[v]
-            far = best - found
-            best = found
-            if far < 5e-3 * best:
+            before, best = best, found
+            if before - best < 5e-3 * best:
                 break
         return best

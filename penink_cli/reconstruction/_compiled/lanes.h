@@ -2,8 +2,11 @@
  *
  * Left to itself the compiler vectorises the loops over the eight pixels of a row only in part, and keeps their sums in
  * memory. Arithmetic on these types is that of their numbers, each rounded as it would be alone, so the bytes of the
- * output depend neither on them nor on how many there are: sixteen bytes with SSE2 and NEON, thirty-two with AVX2 and
- * sixty-four with AVX-512, for which kernels are compiled again. Where there is nothing of it the loops say the same.
+ * output depend neither on them nor on how many there are: sixteen bytes with SSE2 and NEON, thirty-two with AVX2, for
+ * which kernels are compiled again. Where there is nothing of it the loops say the same.
+ *
+ * What it is worth (enlargement of noise by 4 and 8, one thread, 2026): AVX2 takes .65 to .87 of the time of SSE2 with
+ * edges, .70 to .74 without. AVX-512 took .95 to 1.02 of the time of AVX2, and was dropped: twins by AVX-512 were 90 lines.
  */
 #ifndef PENINK_LANES_H
 #define PENINK_LANES_H
@@ -11,12 +14,10 @@
 #include <math.h>
 #include <string.h>
 
-#if defined(__AVX512F__)
-#define LANES 64
-#elif defined(__AVX2__)
-#define LANES 32
+#if defined(__AVX2__)
+#define VECTOR_BYTES 32
 #else
-#define LANES 16
+#define VECTOR_BYTES 16
 #endif
 #if defined(__x86_64__) && defined(__SSE2__) && defined(__GNUC__)
 #include <immintrin.h>
@@ -26,130 +27,102 @@
 #endif
 
 typedef float Four __attribute__((vector_size(16), may_alias));
-typedef float Floats __attribute__((vector_size(LANES), may_alias));
-typedef double Doubles __attribute__((vector_size(LANES), may_alias));
-#if LANES > 32
-typedef double Quads __attribute__((vector_size(32), may_alias));
-#else
-typedef double Quads __attribute__((vector_size(LANES), may_alias));
-#endif
+typedef float Floats __attribute__((vector_size(VECTOR_BYTES), may_alias));
+typedef double Doubles __attribute__((vector_size(VECTOR_BYTES), may_alias));
 
 enum {
-    FLOATS = LANES / sizeof(float), /* in one vector */
-    DOUBLES = LANES / sizeof(double),
-    FOUR_QUADS = 32 / sizeof(Quads), /* vectors of Quads that hold four */
+    FLOATS = VECTOR_BYTES / sizeof(float), /* in one vector */
+    DOUBLES = VECTOR_BYTES / sizeof(double),
+    FOUR_DOUBLES = 4 / DOUBLES, /* vectors that hold four doubles */
     PACK = 4 * FLOATS /* floats that make a vector of bytes */
 };
 
 #define EACH(v) for (unsigned i = 0; i < sizeof(v) / sizeof((v)[0]); i++)
 
-/* How many numbers side by side the processor this runs on is good at, in bytes. AVX-512 counts from the generation on
- * that has VBMI2: earlier ones slow their clock down for it. */
-static inline int lanes_here(void) {
+/* The bytes of a vector that the processor this runs on computes at once. */
+static inline int vector_bytes_here(void) {
 #ifdef MAY_HAVE_AVX2
-    if (!__builtin_cpu_supports("avx2")) return 16;
-    return __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw") &&
-           __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vbmi2") ? 64 : 32;
+    return __builtin_cpu_supports("avx2") ? 32 : 16;
 #else
     return 16;
 #endif
 }
 
-static inline Four all_four(float x) { return (Four){x, x, x, x}; }
-static inline Four four_at(const float *x) { Four v; memcpy(&v, x, sizeof v); return v; }
+static inline Four broadcast_four(float x) { return (Four){x, x, x, x}; }
+static inline Four load_four(const float *x) { Four v; memcpy(&v, x, sizeof v); return v; }
 
 #ifdef __SSE2__
 
-static inline Four less_four(Four v, Four w) { return (Four)_mm_min_ps((__m128)v, (__m128)w); }
-static inline Four more_four(Four v, Four w) { return (Four)_mm_max_ps((__m128)v, (__m128)w); }
-static inline int above_four(Four v, Four w) { return _mm_movemask_ps(_mm_cmpgt_ps((__m128)v, (__m128)w)); }
+static inline Four min_four(Four v, Four w) { return (Four)_mm_min_ps((__m128)v, (__m128)w); }
+static inline Four max_four(Four v, Four w) { return (Four)_mm_max_ps((__m128)v, (__m128)w); }
+static inline int greater_four(Four v, Four w) { return _mm_movemask_ps(_mm_cmpgt_ps((__m128)v, (__m128)w)); }
 
 #else
 
-static inline Four less_four(Four v, Four w) { EACH(v) v[i] = v[i] < w[i] ? v[i] : w[i]; return v; }
-static inline Four more_four(Four v, Four w) { EACH(v) v[i] = v[i] > w[i] ? v[i] : w[i]; return v; }
-static inline int above_four(Four v, Four w) { int m = 0; EACH(v) m |= (v[i] > w[i]) << i; return m; }
+static inline Four min_four(Four v, Four w) { EACH(v) v[i] = v[i] < w[i] ? v[i] : w[i]; return v; }
+static inline Four max_four(Four v, Four w) { EACH(v) v[i] = v[i] > w[i] ? v[i] : w[i]; return v; }
+static inline int greater_four(Four v, Four w) { int m = 0; EACH(v) m |= (v[i] > w[i]) << i; return m; }
 
 #endif
 
-#if LANES == 64
+#if VECTOR_BYTES == 32
 
-static inline Floats all_floats(float x) { return (Floats)_mm512_set1_ps(x); }
-static inline Doubles all_doubles(double x) { return (Doubles)_mm512_set1_pd(x); }
-static inline Floats root_floats(Floats v) { return (Floats)_mm512_sqrt_ps((__m512)v); }
-static inline Doubles root_doubles(Doubles v) { return (Doubles)_mm512_sqrt_pd((__m512d)v); }
-static inline Floats less_floats(Floats v, Floats w) { return (Floats)_mm512_min_ps((__m512)v, (__m512)w); }
-static inline Doubles less_doubles(Doubles v, Doubles w) { return (Doubles)_mm512_min_pd((__m512d)v, (__m512d)w); }
-static inline Floats more_floats(Floats v, Floats w) { return (Floats)_mm512_max_ps((__m512)v, (__m512)w); }
-static inline Doubles more_doubles(Doubles v, Doubles w) { return (Doubles)_mm512_max_pd((__m512d)v, (__m512d)w); }
-static inline int above_floats(Floats v, Floats w) {
-    return _mm512_cmp_ps_mask((__m512)v, (__m512)w, _CMP_GT_OQ);
-}
-static inline int above_doubles(Doubles v, Doubles w) {
-    return _mm512_cmp_pd_mask((__m512d)v, (__m512d)w, _CMP_GT_OQ);
-}
-static inline Quads all_quads(double x) { return (Quads)_mm256_set1_pd(x); }
-
-#elif LANES == 32
-
-static inline Floats all_floats(float x) { return (Floats)_mm256_set1_ps(x); }
-static inline Doubles all_doubles(double x) { return (Doubles)_mm256_set1_pd(x); }
-static inline Floats root_floats(Floats v) { return (Floats)_mm256_sqrt_ps((__m256)v); }
-static inline Doubles root_doubles(Doubles v) { return (Doubles)_mm256_sqrt_pd((__m256d)v); }
-static inline Floats less_floats(Floats v, Floats w) { return (Floats)_mm256_min_ps((__m256)v, (__m256)w); }
-static inline Doubles less_doubles(Doubles v, Doubles w) { return (Doubles)_mm256_min_pd((__m256d)v, (__m256d)w); }
-static inline Floats more_floats(Floats v, Floats w) { return (Floats)_mm256_max_ps((__m256)v, (__m256)w); }
-static inline Doubles more_doubles(Doubles v, Doubles w) { return (Doubles)_mm256_max_pd((__m256d)v, (__m256d)w); }
-static inline int above_floats(Floats v, Floats w) {
+static inline Floats broadcast_floats(float x) { return (Floats)_mm256_set1_ps(x); }
+static inline Doubles broadcast_doubles(double x) { return (Doubles)_mm256_set1_pd(x); }
+static inline Floats sqrt_floats(Floats v) { return (Floats)_mm256_sqrt_ps((__m256)v); }
+static inline Doubles sqrt_doubles(Doubles v) { return (Doubles)_mm256_sqrt_pd((__m256d)v); }
+static inline Floats min_floats(Floats v, Floats w) { return (Floats)_mm256_min_ps((__m256)v, (__m256)w); }
+static inline Doubles min_doubles(Doubles v, Doubles w) { return (Doubles)_mm256_min_pd((__m256d)v, (__m256d)w); }
+static inline Floats max_floats(Floats v, Floats w) { return (Floats)_mm256_max_ps((__m256)v, (__m256)w); }
+static inline Doubles max_doubles(Doubles v, Doubles w) { return (Doubles)_mm256_max_pd((__m256d)v, (__m256d)w); }
+static inline int greater_floats(Floats v, Floats w) {
     return _mm256_movemask_ps(_mm256_cmp_ps((__m256)v, (__m256)w, _CMP_GT_OQ));
 }
-static inline int above_doubles(Doubles v, Doubles w) {
+static inline int greater_doubles(Doubles v, Doubles w) {
     return _mm256_movemask_pd(_mm256_cmp_pd((__m256d)v, (__m256d)w, _CMP_GT_OQ));
 }
-static inline Quads all_quads(double x) { return all_doubles(x); }
 
 #else
 
-static inline Floats all_floats(float x) { return all_four(x); }
-static inline Doubles all_doubles(double x) { return (Doubles){x, x}; }
-static inline Quads all_quads(double x) { return all_doubles(x); }
-static inline Floats less_floats(Floats v, Floats w) { return less_four(v, w); }
-static inline Floats more_floats(Floats v, Floats w) { return more_four(v, w); }
-static inline int above_floats(Floats v, Floats w) { return above_four(v, w); }
+static inline Floats broadcast_floats(float x) { return broadcast_four(x); }
+static inline Doubles broadcast_doubles(double x) { return (Doubles){x, x}; }
+static inline Floats min_floats(Floats v, Floats w) { return min_four(v, w); }
+static inline Floats max_floats(Floats v, Floats w) { return max_four(v, w); }
+static inline int greater_floats(Floats v, Floats w) { return greater_four(v, w); }
 #ifdef __SSE2__
-static inline Floats root_floats(Floats v) { return (Floats)_mm_sqrt_ps((__m128)v); }
-static inline Doubles root_doubles(Doubles v) { return (Doubles)_mm_sqrt_pd((__m128d)v); }
-static inline Doubles less_doubles(Doubles v, Doubles w) { return (Doubles)_mm_min_pd((__m128d)v, (__m128d)w); }
-static inline Doubles more_doubles(Doubles v, Doubles w) { return (Doubles)_mm_max_pd((__m128d)v, (__m128d)w); }
-static inline int above_doubles(Doubles v, Doubles w) {
+static inline Floats sqrt_floats(Floats v) { return (Floats)_mm_sqrt_ps((__m128)v); }
+static inline Doubles sqrt_doubles(Doubles v) { return (Doubles)_mm_sqrt_pd((__m128d)v); }
+static inline Doubles min_doubles(Doubles v, Doubles w) { return (Doubles)_mm_min_pd((__m128d)v, (__m128d)w); }
+static inline Doubles max_doubles(Doubles v, Doubles w) { return (Doubles)_mm_max_pd((__m128d)v, (__m128d)w); }
+static inline int greater_doubles(Doubles v, Doubles w) {
     return _mm_movemask_pd(_mm_cmpgt_pd((__m128d)v, (__m128d)w));
 }
 #else
-static inline Floats root_floats(Floats v) { EACH(v) v[i] = sqrtf(v[i]); return v; }
-static inline Doubles root_doubles(Doubles v) { EACH(v) v[i] = sqrt(v[i]); return v; }
-static inline Doubles less_doubles(Doubles v, Doubles w) { EACH(v) v[i] = v[i] < w[i] ? v[i] : w[i]; return v; }
-static inline Doubles more_doubles(Doubles v, Doubles w) { EACH(v) v[i] = v[i] > w[i] ? v[i] : w[i]; return v; }
-static inline int above_doubles(Doubles v, Doubles w) { int m = 0; EACH(v) m |= (v[i] > w[i]) << i; return m; }
+static inline Floats sqrt_floats(Floats v) { EACH(v) v[i] = sqrtf(v[i]); return v; }
+static inline Doubles sqrt_doubles(Doubles v) { EACH(v) v[i] = sqrt(v[i]); return v; }
+static inline Doubles min_doubles(Doubles v, Doubles w) { EACH(v) v[i] = v[i] < w[i] ? v[i] : w[i]; return v; }
+static inline Doubles max_doubles(Doubles v, Doubles w) { EACH(v) v[i] = v[i] > w[i] ? v[i] : w[i]; return v; }
+static inline int greater_doubles(Doubles v, Doubles w) { int m = 0; EACH(v) m |= (v[i] > w[i]) << i; return m; }
 #endif
 
 #endif
 
 /* The numbers of v where those of t are positive, else those of w. */
-static inline Floats chosen_floats(Floats t, Floats v, Floats w) {
+static inline Floats select_floats(Floats t, Floats v, Floats w) {
     EACH(v) v[i] = t[i] > 0 ? v[i] : w[i];
     return v;
 }
-static inline Doubles chosen_doubles(Doubles t, Doubles v, Doubles w) {
+static inline Doubles select_doubles(Doubles t, Doubles v, Doubles w) {
     EACH(v) v[i] = t[i] > 0 ? v[i] : w[i];
     return v;
 }
 
 /* The numbers without their sign. */
-static inline Four size_four(Four v) { return more_four(v, -v); }
+static inline Four abs_four(Four v) { return max_four(v, -v); }
 
 #ifdef MAY_HAVE_AVX2
-/* `below_zero` for processors with AVX2, whatever else is compiled for: half the instructions. */
-__attribute__((target("avx2"))) static unsigned long long below_zero_wide(float v, float x, float y, float *least) {
+/* `negative_pixels` for processors with AVX2, whatever else is compiled for: half the instructions. */
+__attribute__((target("avx2"))) static unsigned long long negative_pixels_avx2(float v, float x, float y, float *least) {
     const __m256 sign = _mm256_set1_ps(-0.0f);
     const __m256i order = _mm256_setr_epi32(0, 4, 1, 5, 2, 6, 3, 7);
     const __m256 ramp = _mm256_setr_ps(0, 1, 2, 3, 4, 5, 6, 7);
@@ -178,19 +151,19 @@ __attribute__((target("avx2"))) static unsigned long long below_zero_wide(float 
  *
  * least: how close to zero that comes anywhere; either is off by a few roundings. wide: whether there is AVX2.
  */
-static inline unsigned long long below_zero(float v, float x, float y, float *least, int wide) {
+static inline unsigned long long negative_pixels(float v, float x, float y, float *least, int wide) {
     unsigned long long m = 0;
 #ifdef MAY_HAVE_AVX2
-    if (wide) return below_zero_wide(v, x, y, least);
+    if (wide) return negative_pixels_avx2(v, x, y, least);
 #endif
 #ifdef __SSE2__
     const Four ramp = {0, 1, 2, 3};
-    const Four left = all_four(v) + ramp * all_four(x), right = left + all_four(4 * x);
+    const Four left = broadcast_four(v) + ramp * broadcast_four(x), right = left + broadcast_four(4 * x);
     const __m128 sign = _mm_set1_ps(-0.0f);
     __m128 closest = _mm_set1_ps(INFINITY);
     __m128i both[8];
     for (int r = 0; r < 8; r++) {
-        const Four down = all_four(r * y), a = left + down, b = right + down;
+        const Four down = broadcast_four(r * y), a = left + down, b = right + down;
         closest = _mm_min_ps(closest, _mm_min_ps(_mm_andnot_ps(sign, (__m128)a), _mm_andnot_ps(sign, (__m128)b)));
         both[r] = _mm_packs_epi32((__m128i)a, (__m128i)b); /* keeps the signs */
     }
@@ -211,24 +184,14 @@ static inline unsigned long long below_zero(float v, float x, float y, float *le
 
 /* A tile of 8 × 8 pixels as vectors, row after row: for each pixel of vector k the number of its row, `stride` apart, */
 static inline Floats floats_by_row(const float *x, int k, int stride) {
-#if LANES == 64
-    const __m256 one = _mm256_set1_ps(x[2 * k * stride]), other = _mm256_set1_ps(x[(2 * k + 1) * stride]);
-    return (Floats)_mm512_insertf32x8(_mm512_castps256_ps512(one), other, 1);
-#else
-    return all_floats(x[k * FLOATS / 8 * stride]);
-#endif
+    return broadcast_floats(x[k * FLOATS / 8 * stride]);
 }
-static inline Doubles doubles_by_row(const double *x, int k, int stride) { return all_doubles(x[k * DOUBLES / 8 * stride]); }
+static inline Doubles doubles_by_row(const double *x, int k, int stride) { return broadcast_doubles(x[k * DOUBLES / 8 * stride]); }
 
 /* that of its column, */
 static inline Floats floats_by_column(const float *x, int k) {
     Floats v;
-#if LANES == 64
-    (void)k;
-    v = (Floats)_mm512_broadcast_f32x8(_mm256_loadu_ps(x));
-#else
     memcpy(&v, x + k * FLOATS % 8, sizeof v);
-#endif
     return v;
 }
 static inline Doubles doubles_by_column(const double *x, int k) {
@@ -238,27 +201,22 @@ static inline Doubles doubles_by_column(const double *x, int k) {
 }
 
 /* and one where it is in a set, else zero; bits: a table of bytes as eight such numbers. */
-static inline Floats floats_among(const float *bits, unsigned long long set, int k) {
-#if LANES == 64
-    (void)bits;
-    return (Floats)_mm512_maskz_mov_ps((__mmask16)(set >> 16 * k), _mm512_set1_ps(1));
-#else
+static inline Floats floats_where(const float *bits, unsigned long long set, int k) {
     return floats_by_column(bits + 8 * (set >> k * FLOATS / 8 * 8 & 255), k);
-#endif
 }
-static inline Doubles doubles_among(const double *bits, unsigned long long set, int k) {
+static inline Doubles doubles_where(const double *bits, unsigned long long set, int k) {
     return doubles_by_column(bits + 8 * (set >> k * DOUBLES / 8 * 8 & 255), k);
 }
 
 /* Eight numbers below 256, rounded half up and stored as bytes, negative ones as 0. */
-static inline void keep_bytes(const float *v, unsigned char *out) {
+static inline void round_to_bytes(const float *v, unsigned char *out) {
 #ifdef __SSE2__
 #ifdef __AVX2__
     __m256i both = _mm256_cvttps_epi32(_mm256_loadu_ps(v) + _mm256_set1_ps(0.5f));
     __m128i a = _mm256_castsi256_si128(both), b = _mm256_extracti128_si256(both, 1);
 #else
-    __m128i a = _mm_cvttps_epi32((__m128)(four_at(v) + all_four(0.5f)));
-    __m128i b = _mm_cvttps_epi32((__m128)(four_at(v + 4) + all_four(0.5f)));
+    __m128i a = _mm_cvttps_epi32((__m128)(load_four(v) + broadcast_four(0.5f)));
+    __m128i b = _mm_cvttps_epi32((__m128)(load_four(v + 4) + broadcast_four(0.5f)));
 #endif
     a = _mm_packs_epi32(a, b);
     _mm_storel_epi64((__m128i *)out, _mm_packus_epi16(a, a));
@@ -272,14 +230,7 @@ static inline void keep_bytes(const float *v, unsigned char *out) {
 
 /* Four vectors, numbers of any size, each rounded half up and stored as a byte 0 … most. */
 static inline void pack_bytes(const Floats *v, unsigned char most, unsigned char *out) {
-#if LANES == 64
-    const __m512 half = _mm512_set1_ps(0.5f);
-    const __m512i order = _mm512_setr_epi32(0, 4, 8, 12, 1, 5, 9, 13, 2, 6, 10, 14, 3, 7, 11, 15);
-    __m512i a = _mm512_packs_epi32(_mm512_cvttps_epi32(v[0] + half), _mm512_cvttps_epi32(v[1] + half));
-    __m512i b = _mm512_packs_epi32(_mm512_cvttps_epi32(v[2] + half), _mm512_cvttps_epi32(v[3] + half));
-    a = _mm512_permutexvar_epi32(order, _mm512_packus_epi16(a, b));
-    _mm512_storeu_si512(out, _mm512_min_epu8(a, _mm512_set1_epi8((char)most)));
-#elif LANES == 32
+#if VECTOR_BYTES == 32
     const __m256 half = _mm256_set1_ps(0.5f);
     const __m256i order = _mm256_setr_epi32(0, 4, 1, 5, 2, 6, 3, 7);
     __m256i a = _mm256_packs_epi32(_mm256_cvttps_epi32(v[0] + half), _mm256_cvttps_epi32(v[1] + half));
@@ -300,7 +251,7 @@ static inline void pack_bytes(const Floats *v, unsigned char most, unsigned char
 }
 
 /* Sixteen sets of eight the other way round: eight sets of sixteen. */
-static inline void turn_sets(const unsigned char *sets, int *out) {
+static inline void transpose_sets(const unsigned char *sets, int *out) {
 #ifdef __SSE2__
     __m128i v;
     memcpy(&v, sets, sizeof v);

@@ -1,45 +1,46 @@
+"""Vectors of floats or doubles as one fused type, `Lanes`; see lanes.h. A parameter `like` only tells which."""
+
 from libc.string cimport memcpy
 
 cdef extern from "lanes.h" nogil:
     enum:
         FLOATS
         DOUBLES
-        FOUR_QUADS
+        FOUR_DOUBLES
         PACK
-    ctypedef float Four  # four floats, or as many as
-    ctypedef float Floats  # the machine computes at once,
-    ctypedef double Doubles  # or doubles,
-    ctypedef double Quads  # or up to four of those: these are arrays, but arithmetic is written as on their numbers
-    int lanes_here()
-    Four all_four(float x)
-    Floats all_floats(float x)
-    Doubles all_doubles(double x)
-    Quads all_quads(double x)
-    Four four_at(const float* x)
-    Four less_four(Four v, Four w)
-    Four more_four(Four v, Four w)
-    Four size_four(Four v)
-    int above_four(Four v, Four w)
-    Floats root_floats(Floats v)
-    Doubles root_doubles(Doubles v)
-    Floats less_floats(Floats v, Floats w)
-    Doubles less_doubles(Doubles v, Doubles w)
-    Floats more_floats(Floats v, Floats w)
-    Doubles more_doubles(Doubles v, Doubles w)
-    int above_floats(Floats v, Floats w)
-    int above_doubles(Doubles v, Doubles w)
-    Floats chosen_floats(Floats t, Floats v, Floats w)
-    Doubles chosen_doubles(Doubles t, Doubles v, Doubles w)
-    unsigned long long below_zero(float v, float x, float y, float* least, int wide)
+    # Vectors. To Cython they are numbers: arithmetic on them is written as on one, and is done on each.
+    ctypedef float Four  # 4 floats
+    ctypedef float Floats  # FLOATS floats: 4 with SSE2 and NEON, 8 with AVX2
+    ctypedef double Doubles  # DOUBLES doubles: 2 or 4
+    int vector_bytes_here()
+    Four broadcast_four(float x)
+    Floats broadcast_floats(float x)
+    Doubles broadcast_doubles(double x)
+    Four load_four(const float* x)
+    Four min_four(Four v, Four w)
+    Four max_four(Four v, Four w)
+    Four abs_four(Four v)
+    int greater_four(Four v, Four w)
+    Floats sqrt_floats(Floats v)
+    Doubles sqrt_doubles(Doubles v)
+    Floats min_floats(Floats v, Floats w)
+    Doubles min_doubles(Doubles v, Doubles w)
+    Floats max_floats(Floats v, Floats w)
+    Doubles max_doubles(Doubles v, Doubles w)
+    int greater_floats(Floats v, Floats w)
+    int greater_doubles(Doubles v, Doubles w)
+    Floats select_floats(Floats t, Floats v, Floats w)
+    Doubles select_doubles(Doubles t, Doubles v, Doubles w)
+    unsigned long long negative_pixels(float v, float x, float y, float* least, int wide)
     Floats floats_by_row(const float* x, int k, int stride)
     Doubles doubles_by_row(const double* x, int k, int stride)
     Floats floats_by_column(const float* x, int k)
     Doubles doubles_by_column(const double* x, int k)
-    Floats floats_among(const float* bits, unsigned long long set, int k)
-    Doubles doubles_among(const double* bits, unsigned long long set, int k)
-    void keep_bytes(const float* v, unsigned char* out)
+    Floats floats_where(const float* bits, unsigned long long set, int k)
+    Doubles doubles_where(const double* bits, unsigned long long set, int k)
+    void round_to_bytes(const float* v, unsigned char* out)
     void pack_bytes(const Floats* v, unsigned char most, unsigned char* out)
-    void turn_sets(const unsigned char* sets, int* out)
+    void transpose_sets(const unsigned char* sets, int* out)
     int lowest(unsigned long long set)
 
 ctypedef fused Lanes:
@@ -48,15 +49,15 @@ ctypedef fused Lanes:
 
 cdef inline void fill(Lanes* v, double x) noexcept nogil:  # in every place
     if Lanes is Floats:
-        v[0] = all_floats(<float>x)
+        v[0] = broadcast_floats(<float>x)
     else:
-        v[0] = all_doubles(x)
+        v[0] = broadcast_doubles(x)
 
-cdef inline Lanes number(void* numbers, Py_ssize_t i, Lanes* like) noexcept nogil:  # number i, in every place
+cdef inline Lanes broadcast(void* numbers, Py_ssize_t i, Lanes* like) noexcept nogil:  # number i, in every place
     if Lanes is Floats:
-        return all_floats((<float*>numbers)[i])
+        return broadcast_floats((<float*>numbers)[i])
     else:
-        return all_doubles((<double*>numbers)[i])
+        return broadcast_doubles((<double*>numbers)[i])
 
 cdef inline int vectors(int rows, Lanes* like) noexcept nogil:  # that make up so many rows of eight, or a little more
     if Lanes is Floats:
@@ -76,11 +77,11 @@ cdef inline Lanes by_column(void* numbers, int k, Lanes* like) noexcept nogil:
     else:
         return doubles_by_column(<double*>numbers, k)
 
-cdef inline Lanes among(unsigned long long set, int k, Lanes* bits) noexcept nogil:  # one where they are in the set
+cdef inline Lanes where(unsigned long long set, int k, Lanes* bits) noexcept nogil:  # one where they are in the set
     if Lanes is Floats:
-        return floats_among(<float*>bits, set, k)
+        return floats_where(<float*>bits, set, k)
     else:
-        return doubles_among(<double*>bits, set, k)
+        return doubles_where(<double*>bits, set, k)
 
 cdef inline void* number_at(void* numbers, Py_ssize_t i, Lanes* like) noexcept nogil:  # where number i of an array is
     if Lanes is Floats:
@@ -88,39 +89,39 @@ cdef inline void* number_at(void* numbers, Py_ssize_t i, Lanes* like) noexcept n
     else:
         return <double*>numbers + i
 
-cdef inline Lanes root(Lanes v) noexcept nogil:
+cdef inline Lanes square_root(Lanes v) noexcept nogil:
     if Lanes is Floats:
-        return root_floats(v)
+        return sqrt_floats(v)
     else:
-        return root_doubles(v)
+        return sqrt_doubles(v)
 
-cdef inline Lanes less(Lanes v, Lanes w) noexcept nogil:  # v < w ? v : w
+cdef inline Lanes minimum(Lanes v, Lanes w) noexcept nogil:  # v < w ? v : w
     if Lanes is Floats:
-        return less_floats(v, w)
+        return min_floats(v, w)
     else:
-        return less_doubles(v, w)
+        return min_doubles(v, w)
 
-cdef inline Lanes more(Lanes v, Lanes w) noexcept nogil:  # v > w ? v : w
+cdef inline Lanes maximum(Lanes v, Lanes w) noexcept nogil:  # v > w ? v : w
     if Lanes is Floats:
-        return more_floats(v, w)
+        return max_floats(v, w)
     else:
-        return more_doubles(v, w)
+        return max_doubles(v, w)
 
-cdef inline Lanes chosen(Lanes t, Lanes v, Lanes w) noexcept nogil:  # t > 0 ? v : w
+cdef inline Lanes select(Lanes t, Lanes v, Lanes w) noexcept nogil:  # t > 0 ? v : w
     if Lanes is Floats:
-        return chosen_floats(t, v, w)
+        return select_floats(t, v, w)
     else:
-        return chosen_doubles(t, v, w)
+        return select_doubles(t, v, w)
 
-cdef inline Lanes ease(Lanes u, Lanes least, Lanes most, Lanes three) noexcept nogil:  # S(u), u within least … most
-    u = less(more(u, least), most)
+cdef inline Lanes smoothstep(Lanes u, Lanes least, Lanes most, Lanes three) noexcept nogil:  # S of the clamped u
+    u = minimum(maximum(u, least), most)
     return u * u * (three - (u + u))
 
-cdef inline int above(Lanes v, Lanes w) noexcept nogil:  # the set of places where v > w
+cdef inline int greater(Lanes v, Lanes w) noexcept nogil:  # the set of places where v > w
     if Lanes is Floats:
-        return above_floats(v, w)
+        return greater_floats(v, w)
     else:
-        return above_doubles(v, w)
+        return greater_doubles(v, w)
 
 cdef inline Lanes* lanes_at(void* place, Lanes* like) noexcept nogil:  # a place as one of the same lanes
     return <Lanes*>place
@@ -133,15 +134,15 @@ cdef inline Lanes load(void* place, Lanes* like) noexcept nogil:  # from any pla
 cdef inline void store(void* place, Lanes v) noexcept nogil:
     memcpy(place, &v, sizeof(Lanes))
 
-ctypedef fused Columns:  # numbers of the four columns of samples: one vector, or FOUR_QUADS
+ctypedef fused Columns:  # numbers of the four columns of samples: one vector, or FOUR_DOUBLES
     Four
-    Quads
+    Doubles
 
 cdef inline Columns* columns_at(void* place, Columns* like) noexcept nogil:
     return <Columns*>place
 
-cdef inline Columns spread(void* numbers, int i, Columns* like) noexcept nogil:  # as `number`
+cdef inline Columns broadcast_column(void* numbers, int i, Columns* like) noexcept nogil:  # as `number`
     if Columns is Four:
-        return all_four((<float*>numbers)[i])
+        return broadcast_four((<float*>numbers)[i])
     else:
-        return all_quads((<double*>numbers)[i])
+        return broadcast_doubles((<double*>numbers)[i])

@@ -8,7 +8,7 @@ exact, however coarse the quick test.
 """
 
 from libc.math cimport fabs
-from penink_cli.reconstruction._compiled.lanes cimport below_zero
+from penink_cli.reconstruction._compiled.lanes cimport negative_pixels
 from penink_cli.reconstruction._compiled.scene cimport side_of_query, side_of_vertex
 
 cdef float SLACK = 1e-5  # of the quick tests, in samples: ten times the worst rounding of a float
@@ -49,7 +49,7 @@ cdef class Pixels:
         cdef float least = 0.0
         cdef double near = NEAR * (fabs(value) + 8.0 * (fabs(gx) + fabs(gy)))
         cdef unsigned long long unsure = 0
-        cdef unsigned long long m = ~below_zero(
+        cdef unsigned long long m = ~negative_pixels(
             <float>value, <float>gx, <float>gy,
             &least, self.wide,
         )

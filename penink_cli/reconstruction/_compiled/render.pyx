@@ -5,7 +5,7 @@ In double, or for 8-bit output in float; what pixels see is exact in both.
 """
 
 from libc.string cimport memcmp, memcpy
-from penink_cli.reconstruction._compiled.desk cimport Desk
+from penink_cli.reconstruction._compiled.scratch cimport Scratch
 from penink_cli.reconstruction._compiled.shade cimport attenuate
 from penink_cli.reconstruction._compiled.tile cimport Tile
 
@@ -21,7 +21,7 @@ ctypedef fused stored:
     double
 
 
-cdef void lay_out_rows(Desk desk, Tile tile, real* yc, real* yb) noexcept nogil:
+cdef void lay_out_rows(Scratch scratch, Tile tile, real* yc, real* yb) noexcept nogil:
     """Lay ready what belongs to the rows of pixels of a tile; yc, yb: (8, 4) weights."""
     cdef int k, r
     cdef real[8] uy
@@ -30,17 +30,19 @@ cdef void lay_out_rows(Desk desk, Tile tile, real* yc, real* yb) noexcept nogil:
         r = k if k < 4 * tile.ny else 4 * (tile.ny - 1) + (k & 3)
         ky[k] = yc[r]
         ky[32 + k] = yb[r]
-    if memcmp(desk.ky, ky, 64 * sizeof(ky[0])) != 0:
-        memcpy(desk.ky, ky, 64 * sizeof(ky[0]))
-        desk.known_weights[0] = desk.known_weights[1] = 0
+    if memcmp(scratch.ky, ky, 64 * sizeof(ky[0])) != 0:
+        memcpy(scratch.ky, ky, 64 * sizeof(ky[0]))
+        scratch.known_weights[0] = scratch.known_weights[1] = 0
     for k in range(8):
-        uy[k] = (tile.py[k if k < tile.ny else 0] - tile.cy) / desk.radius
-    if memcmp(desk.uy, uy, 8 * sizeof(uy[0])) != 0:
-        memcpy(desk.uy, uy, 8 * sizeof(uy[0]))
-        desk.known = 0
+        uy[k] = (tile.py[k if k < tile.ny else 0] - tile.cy) / scratch.radius
+    if memcmp(scratch.uy, uy, 8 * sizeof(uy[0])) != 0:
+        memcpy(scratch.uy, uy, 8 * sizeof(uy[0]))
+        scratch.known = 0
 
 
-cdef void lay_out(Desk desk, Tile tile, real* samples, real* xc, real* xb, Py_ssize_t stride, real* ux) noexcept nogil:
+cdef void lay_out(
+    Scratch scratch, Tile tile, real* samples, real* xc, real* xb, Py_ssize_t stride, real* ux
+) noexcept nogil:
     """Lay ready the samples of a tile, and what belongs to its columns; what is beyond them belongs to the next."""
     cdef Py_ssize_t i, j
     cdef real* f
@@ -48,19 +50,19 @@ cdef void lay_out(Desk desk, Tile tile, real* samples, real* xc, real* xb, Py_ss
     cdef real* kx
     cdef real* values
     if real is float:
-        kx = <float*>desk.kx
-        values = <float*>desk.values
+        kx = <float*>scratch.kx
+        values = <float*>scratch.values
     else:
-        kx = <double*>desk.kx
-        values = <double*>desk.values
+        kx = <double*>scratch.kx
+        values = <double*>scratch.values
     for i in range(8):
         columns = xc + stride * i if i < 4 else xb + stride * (i - 4)
         if memcmp(kx + 8 * i, columns, 8 * sizeof(xc[0])) != 0:
             memcpy(kx + 8 * i, columns, 8 * sizeof(xc[0]))
-            desk.known_weights[0] = desk.known_weights[1] = 0
-    if memcmp(desk.ux, ux, 8 * sizeof(xc[0])) != 0:
-        memcpy(desk.ux, ux, 8 * sizeof(xc[0]))
-        desk.known = 0
+            scratch.known_weights[0] = scratch.known_weights[1] = 0
+    if memcmp(scratch.ux, ux, 8 * sizeof(xc[0])) != 0:
+        memcpy(scratch.ux, ux, 8 * sizeof(xc[0]))
+        scratch.known = 0
     for j in range(4):
         f = samples + <Py_ssize_t>tile.row[j] * tile.scene.width
         if tile.column[3] == tile.column[0] + 3:
@@ -71,7 +73,7 @@ cdef void lay_out(Desk desk, Tile tile, real* samples, real* xc, real* xb, Py_ss
 
 
 def retouch(
-    Tile tile, Desk desk, real[:, ::1] samples, double[::1] x, real[::1] ux, real[:, ::1] xc, real[:, ::1] xb,
+    Tile tile, Scratch scratch, real[:, ::1] samples, double[::1] x, real[::1] ux, real[:, ::1] xc, real[:, ::1] xb,
     int[::1] x_cell, int[::1] x_begin, double[::1] y, real[:, ::1] yc, real[:, ::1] yb, int[::1] y_cell,
     int[::1] y_begin, stored[:, ::1] out,
 ) -> None:
@@ -86,7 +88,7 @@ def retouch(
         for a in range(y_cell.shape[0]):
             c = y_begin[a]
             tile.place_in_row(y_cell[a], &y[c], y_begin[a + 1] - y_begin[a])
-            lay_out_rows(desk, tile, &yc[c, 0], &yb[c, 0])
+            lay_out_rows(scratch, tile, &yc[c, 0], &yb[c, 0])
             for b in range(x_cell.shape[0]):
                 if tile.scene.empty_around(x_cell[b], y_cell[a]):
                     continue
@@ -95,8 +97,8 @@ def retouch(
                 if not tile.see():
                     continue
                 lay_out(
-                    desk, tile, &samples[0, 0], &xc[0, c], &xb[0, c],
+                    scratch, tile, &samples[0, 0], &xc[0, c], &xb[0, c],
                     xc.shape[1], &ux[c],
                 )  # fmt: skip
-                attenuate(desk, tile)
-                desk.paint(desk, tile.shaded, tile.nx, tile.ny, &out[y_begin[a], c], out.shape[1])
+                attenuate(scratch, tile)
+                scratch.paint(scratch, tile.shaded, tile.nx, tile.ny, &out[y_begin[a], c], out.shape[1])

@@ -5,8 +5,8 @@ A row stands for a pixel, the mean of a few points, and holds the weights of the
 those of plain convolution, changed where the points of a tile do not see all of their samples alike.
 """
 
-from penink_cli.reconstruction._compiled.desk cimport Desk
-from penink_cli.reconstruction._compiled.lanes cimport turn_sets
+from penink_cli.reconstruction._compiled.scratch cimport Scratch
+from penink_cli.reconstruction._compiled.lanes cimport transpose_sets
 from penink_cli.reconstruction._compiled.shade cimport attenuate
 from penink_cli.reconstruction._compiled.tile cimport Tile
 
@@ -19,27 +19,27 @@ cdef float _smooth(float t) noexcept nogil:
     return 0.0 if t <= 0.0 else (1.0 if t >= 1.0 else t * t * (3.0 - 2.0 * t))
 
 
-cdef int _shade(Tile tile, Desk desk) except -1 nogil:
+cdef int _shade(Tile tile, Scratch scratch) except -1 nogil:
     """Find what the points of a tile that `see` has looked at do not see, and how far it is attenuated."""
     cdef int k
     cdef float u
     cdef bint same = True
-    cdef float* ux = <float*>desk.ux
-    cdef float* uy = <float*>desk.uy
+    cdef float* ux = <float*>scratch.ux
+    cdef float* uy = <float*>scratch.uy
     for k in range(8):
-        u = <float>((tile.px[min(k, tile.nx - 1)] - tile.cx) / desk.radius)
+        u = <float>((tile.px[min(k, tile.nx - 1)] - tile.cx) / scratch.radius)
         same &= ux[k] == u
         ux[k] = u
-        u = <float>((tile.py[min(k, tile.ny - 1)] - tile.cy) / desk.radius)
+        u = <float>((tile.py[min(k, tile.ny - 1)] - tile.cy) / scratch.radius)
         same &= uy[k] == u
         uy[k] = u
     if not same:
-        desk.known = 0
-    attenuate(desk, tile)
+        scratch.known = 0
+    attenuate(scratch, tile)
 
 
 cdef void _change(
-    Desk desk, int r, int shaded, int faded, float* xc, float* xb, double* yc, double* yb, float* out
+    Scratch scratch, int r, int shaded, int faded, float* xc, float* xb, double* yc, double* yb, float* out
 ) noexcept nogil:
     """By what equation 5's weights of the 16 samples (outer) differ from plain ones at the 8 points of row r (inner).
 
@@ -59,7 +59,7 @@ cdef void _change(
         for c in range(8):
             alpha[8 * s + c] = y
         if (faded >> s) & 1:
-            source = <float*>desk.alpha + 64 * s + 8 * r
+            source = <float*>scratch.alpha + 64 * s + 8 * r
             for c in range(8):
                 alpha[8 * s + c] = source[c]
         y = <float>yc[s >> 2]
@@ -97,14 +97,14 @@ cdef void _change(
 
 
 def rows(
-    Tile tile, Desk desk, double[::1] x, double[:, ::1] xc, double[:, ::1] xb, int[::1] x_cell, int[::1] x_begin,
+    Tile tile, Scratch scratch, double[::1] x, double[:, ::1] xc, double[:, ::1] xb, int[::1] x_cell, int[::1] x_begin,
     double[::1] y, double[:, ::1] yc, double[:, ::1] yb, int[::1] y_cell, int[::1] y_begin, int[::1] tiles,
     int[::1] pixels, int fine, int[::1] x_base, int[::1] y_base, float[:, ::1] x_plain, float[:, ::1] y_plain,
     float[:, :, ::1] weight,
 ):
     """Fill the rows of some pixels, each the mean of fine × fine points. True if an edge matters.
 
-    desk: of single numbers. x …, y …: of all points along each axis, as in lattice.Axis. tiles: (4,) first and
+    scratch: of single numbers. x …, y …: of all points along each axis, as in lattice.Axis. tiles: (4,) first and
     last + 1 tile down and across. pixels: (2,) row and column of the block's first pixel. x_base, y_base: first
     sample that each pixel of an axis depends on; x_plain, y_plain: (n, 5) weights of plain convolution from there on.
     weight: (rows, columns, 25) filled: 5 × 5 samples from the bases on.
@@ -142,9 +142,9 @@ def rows(
                 if not tile.see():
                     continue
                 matters = True
-                _shade(tile, desk)
-                turn_sets(desk.shaded_rows, shaded)
-                turn_sets(desk.faded_rows, faded)
+                _shade(tile, scratch)
+                transpose_sets(scratch.shaded_rows, shaded)
+                transpose_sets(scratch.faded_rows, faded)
                 for c in range(8):
                     k = at_x + min(c, nx - 1)
                     pixel[c] = k // fine - pixels[1]
@@ -160,7 +160,7 @@ def rows(
                     for i in range(4):
                         down[i] = 5 * (min(last_y, max(0, y_cell[a] - 1 + i)) - y_base[k // fine])
                     _change(
-                        desk, r, shaded[r], faded[r], columns_c, columns_b,
+                        scratch, r, shaded[r], faded[r], columns_c, columns_b,
                         &yc[k, 0], &yb[k, 0], change,
                     )  # fmt: skip
                     for c in range(nx):

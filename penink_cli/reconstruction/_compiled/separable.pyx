@@ -8,7 +8,7 @@ cimport cython
 from libc.stdlib cimport free
 from penink_cli.ground._compiled.memory cimport room
 from penink_cli.reconstruction._compiled.lanes cimport (
-    DOUBLES, FLOATS, PACK, Doubles, Floats, Lanes, all_floats, load, number, pack_bytes, store,
+    DOUBLES, FLOATS, PACK, Doubles, Floats, Lanes, broadcast, broadcast_floats, load, pack_bytes, store,
 )
 
 
@@ -88,10 +88,10 @@ cdef inline void expand_few(
     cdef Lanes w2 = load(w + 2 * stride, like)
     cdef Lanes w3 = load(w + 3 * stride, like)
     for j in range(rows):
-        sums = number(f[j], column[0], like) * w0
-        sums = sums + number(f[j], column[1], like) * w1
-        sums = sums + number(f[j], column[2], like) * w2
-        sums = sums + number(f[j], column[3], like) * w3
+        sums = broadcast(f[j], column[0], like) * w0
+        sums = sums + broadcast(f[j], column[1], like) * w1
+        sums = sums + broadcast(f[j], column[2], like) * w2
+        sums = sums + broadcast(f[j], column[3], like) * w3
         store(out + across * j, sums)
 
 
@@ -139,10 +139,10 @@ cdef void combine_bytes(
     cdef Py_ssize_t h, k
     cdef Floats[4] sums
     cdef Py_ssize_t x = 0
-    cdef Floats v0 = all_floats(w0)
-    cdef Floats v1 = all_floats(w1)
-    cdef Floats v2 = all_floats(w2)
-    cdef Floats v3 = all_floats(w3)
+    cdef Floats v0 = broadcast_floats(w0)
+    cdef Floats v1 = broadcast_floats(w1)
+    cdef Floats v2 = broadcast_floats(w2)
+    cdef Floats v3 = broadcast_floats(w3)
     cdef unsigned char most = <unsigned char>maxval
     while True:
         for h in range(4):

@@ -1,4 +1,4 @@
-from penink_cli.reconstruction._compiled.desk cimport Desk
+from penink_cli.reconstruction._compiled.scratch cimport Scratch
 from penink_cli.reconstruction._compiled.tile cimport Tile
 
-cdef int attenuate(Desk desk, Tile tile) except -1 nogil
+cdef int attenuate(Scratch scratch, Tile tile) except -1 nogil

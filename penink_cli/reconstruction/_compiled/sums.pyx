@@ -1,16 +1,16 @@
 # cython: boundscheck=False, wraparound=False, cdivision=True
 """The arithmetic of equation 5: the weighted sums of the samples at each pixel of a tile.
 
-As in `fades` by vectors of doubles or floats, and likewise compiled again for wider ones. A *strip* is a row of eight
-pixels, or the two of them that a vector of sixteen holds.
+As in `fades` by vectors of doubles or floats, and likewise compiled again for wider ones.
 """
 
 cimport cython
 from libc.string cimport memcpy
-from penink_cli.reconstruction._compiled.desk cimport Desk
+from penink_cli.reconstruction._compiled.scratch cimport Scratch
 from penink_cli.reconstruction._compiled.lanes cimport (
-    DOUBLES, FLOATS, FOUR_QUADS, Columns, Doubles, Floats, Four, Lanes, Quads, above, by_column, by_row, chosen,
-    columns_at, ease, fill, keep_bytes, lanes_at, less, lowest, more, number, number_at, spread, turn_sets, vectors,
+    FOUR_DOUBLES, Columns, Doubles, Floats, Four, Lanes, broadcast, broadcast_column, by_column,
+    by_row, columns_at, fill, greater, lanes_at, lowest, maximum, minimum, number_at, round_to_bytes, select,
+    smoothstep, transpose_sets, vectors,
 )
 
 from penink_cli.reconstruction import kernels
@@ -25,34 +25,26 @@ cdef double T1 = kernels.T1
 cdef double T2 = kernels.T2
 
 
-cdef inline int rows_of_strip(Lanes* like) noexcept nogil:
-    """How many rows a strip has."""
-    if Lanes is Floats:
-        return FLOATS // 8 if FLOATS > 8 else 1
-    else:
-        return DOUBLES // 8 if DOUBLES > 8 else 1
-
-
-cdef void multiply(Lanes* like, Desk desk, int kernel, int samples) noexcept nogil:
+cdef void multiply(Lanes* like, Scratch scratch, int kernel, int samples) noexcept nogil:
     """Fill in the weights of some samples at each pixel, where they are not known."""
     cdef int s, k
     cdef void* columns
     cdef void* rows
     cdef Lanes* out
     cdef int n = vectors(8, like)
-    samples &= ~desk.known_weights[kernel]
-    desk.known_weights[kernel] |= samples
+    samples &= ~scratch.known_weights[kernel]
+    scratch.known_weights[kernel] |= samples
     while samples:
         s = lowest(samples)
         samples &= samples - 1
-        columns = number_at(desk.kx, 32 * kernel + 8 * (s & 3), like)
-        rows = number_at(desk.ky, 32 * kernel + (s >> 2), like)
-        out = lanes_at(desk.weights, like) + n * (16 * kernel + s)
+        columns = number_at(scratch.kx, 32 * kernel + 8 * (s & 3), like)
+        rows = number_at(scratch.ky, 32 * kernel + (s >> 2), like)
+        out = lanes_at(scratch.weights, like) + n * (16 * kernel + s)
         for k in range(n):
             out[k] = by_row(rows, k, 4, like) * by_column(columns, k, like)
 
 
-cdef inline void add_columns(Desk desk, int weights, int seen, Columns* sums, Columns* ones) noexcept nogil:
+cdef inline void add_columns(Scratch scratch, int weights, int seen, Columns* sums, Columns* ones) noexcept nogil:
     """For each column of samples Σ weight · value, and of the weights, over its samples that are seen.
 
     weights: where in `ky` those of the four rows of samples are.
@@ -61,14 +53,14 @@ cdef inline void add_columns(Desk desk, int weights, int seen, Columns* sums, Co
     cdef Py_ssize_t h
     cdef Columns y, w
     cdef Columns* mask
-    cdef Py_ssize_t half = 1 if Columns is Four else FOUR_QUADS
+    cdef Py_ssize_t half = 1 if Columns is Four else FOUR_DOUBLES
     cdef double zero = 0.0  # in float, too
-    cdef Columns* values = columns_at(desk.values, sums)
+    cdef Columns* values = columns_at(scratch.values, sums)
     for h in range(half):
-        sums[h] = ones[h] = spread(&zero, 0, sums)
+        sums[h] = ones[h] = broadcast_column(&zero, 0, sums)
     for j in range(4):
-        y = spread(desk.ky, weights + j, sums)
-        mask = columns_at(desk.bits, sums) + 2 * half * ((seen >> (4 * j)) & 15)
+        y = broadcast_column(scratch.ky, weights + j, sums)
+        mask = columns_at(scratch.bits, sums) + 2 * half * ((seen >> (4 * j)) & 15)
         for h in range(half):
             w = y * mask[h]
             ones[h] = ones[h] + w
@@ -76,51 +68,41 @@ cdef inline void add_columns(Desk desk, int weights, int seen, Columns* sums, Co
 
 
 cdef inline void add_seen(
-    Lanes* like, Desk desk, int kernel, int row, int* shaded, Lanes* top, Lanes* bottom
+    Lanes* like, Scratch scratch, int kernel, int row, int* shaded, Lanes* top, Lanes* bottom
 ) noexcept nogil:
-    """Numerator and denominator of equation 5 for the strip that begins at a row, over the samples all of a row see.
+    """Numerator and denominator of equation 5 for a row of pixels, over the samples that all of them see.
 
     kernel: 0 the cubic, 1 the B-spline. These samples are summed as separable. shaded: the others, for each row.
     top, bottom: of the whole tile.
     """
-    cdef int i, k, r
+    cdef int i, k
     cdef Lanes f, y, x
-    cdef double[8] ones
+    cdef Lanes[2] sums, ones  # room for four numbers, of floats and of doubles
     cdef void* columns
     cdef int first = vectors(row, like)
-    cdef double[8] sums  # room for four of either, for each row
-    for r in range(rows_of_strip(like)):
-        if Lanes is Floats:
-            add_columns(
-                desk, 32 * kernel + 4 * (row + r), ~shaded[row + r],
-                <Four*>number_at(sums, 4 * r, like),
-                <Four*>number_at(ones, 4 * r, like),
-            )  # fmt: skip
-        else:
-            add_columns(
-                desk, 32 * kernel + 4 * (row + r), ~shaded[row + r],
-                <Quads*>number_at(sums, 4 * r, like),
-                <Quads*>number_at(ones, 4 * r, like),
-            )  # fmt: skip
+    if Lanes is Floats:
+        add_columns(scratch, 32 * kernel + 4 * row, ~shaded[row], <Four*>sums, <Four*>ones)
+    else:
+        add_columns(scratch, 32 * kernel + 4 * row, ~shaded[row], <Doubles*>sums, <Doubles*>ones)
     for i in range(4):
-        columns = number_at(desk.kx, 32 * kernel + 8 * i, like)
-        f = by_row(number_at(sums, i, like), 0, 4, like)
-        y = by_row(number_at(ones, i, like), 0, 4, like)
-        for k in range(vectors(rows_of_strip(like), like)):
+        columns = number_at(scratch.kx, 32 * kernel + 8 * i, like)
+        f = broadcast(sums, i, like)
+        y = broadcast(ones, i, like)
+        for k in range(vectors(1, like)):
             x = by_column(columns, k, like)
             top[first + k] = f * x if i == 0 else top[first + k] + f * x
             bottom[first + k] = y * x if i == 0 else bottom[first + k] + y * x
 
 
 cdef inline void add_faded(
-    Lanes* like, Desk desk, int kernel, int s, int begin, int end, Lanes* top, Lanes* bottom
+    Lanes* like, Scratch scratch, int kernel, int s, int begin, int end, Lanes* top, Lanes* bottom
 ) noexcept nogil:
     """Add one of the other samples to numerator and denominator, for vectors begin … end of the tile."""
     cdef int k
     cdef Lanes w
-    cdef Lanes f = number(desk.values, s, like)
-    cdef Lanes* weights = lanes_at(desk.weights, like) + vectors(8, like) * (16 * kernel + s)
-    cdef Lanes* alpha = lanes_at(desk.alpha, like) + vectors(8, like) * s
+    cdef Lanes f = broadcast(scratch.values, s, like)
+    cdef Lanes* weights = lanes_at(scratch.weights, like) + vectors(8, like) * (16 * kernel + s)
+    cdef Lanes* alpha = lanes_at(scratch.alpha, like) + vectors(8, like) * s
     for k in range(begin, end):
         w = weights[k] * alpha[k]
         bottom[k] = bottom[k] + w
@@ -132,40 +114,40 @@ cdef inline bint any_below(Lanes* v, int begin, int end, Lanes limit) noexcept n
     cdef int k
     cdef Lanes least = v[begin]
     for k in range(begin + 1, end):
-        least = less(v[k], least)
-    return above(limit, least) != 0
+        least = minimum(v[k], least)
+    return greater(limit, least) != 0
 
 
 cdef inline Lanes smooth(Lanes t, Lanes one) noexcept nogil:
     """S(t) = 3t² − 2t³ on 0 … 1, clamped."""
     cdef Lanes three
     fill(&three, 3.0)
-    return ease(t, one - one, one, three)
+    return smoothstep(t, one - one, one, three)
 
 
 cdef void blend(
-    Lanes* like, Desk desk, int row, int* shaded, int faded, Lanes* top, Lanes* bottom, Lanes* out
+    Lanes* like, Scratch scratch, int row, int* shaded, int faded, Lanes* top, Lanes* bottom, Lanes* out
 ) noexcept nogil:
-    """The values of the strip that begins at a row, where the sums over the cubic's weights do not do.
+    """The values of a row of pixels, where the sums over the cubic's weights do not do.
 
-    faded: the samples that count somewhere in the strip, but not everywhere. top, bottom, out: of the whole tile.
+    faded: the samples that count somewhere in the row, but not everywhere. top, bottom, out: of the whole tile.
     """
     cdef int k
     cdef int[8] none
     cdef Lanes[32] top_b, bottom_b
     cdef Lanes w, one, half, threshold
     cdef int begin = vectors(row, like)
-    cdef int end = begin + vectors(rows_of_strip(like), like)
+    cdef int end = begin + vectors(1, like)
     fill(&one, 1.0)
     fill(&half, T1)
     fill(&threshold, T2)
-    multiply(like, desk, 1, faded)
-    add_seen(like, desk, 1, row, shaded, top_b, bottom_b)
+    multiply(like, scratch, 1, faded)
+    add_seen(like, scratch, 1, row, shaded, top_b, bottom_b)
     while faded:
-        add_faded(like, desk, 1, lowest(faded), begin, end, top_b, bottom_b)
+        add_faded(like, scratch, 1, lowest(faded), begin, end, top_b, bottom_b)
         faded &= faded - 1
     for k in range(begin, end):
-        if desk.only_b:
+        if scratch.only_b:
             out[k] = top_b[k] / bottom_b[k]
         else:
             w = smooth(bottom[k] / half, one)  # ω = S(den / T1)
@@ -173,10 +155,10 @@ cdef void blend(
     if any_below(bottom_b, begin, end, threshold):  # starved: plain convolution, across the edges
         for k in range(8):
             none[k] = 0
-        add_seen(like, desk, 1 if desk.only_b else 0, row, none, top, bottom)
+        add_seen(like, scratch, 1 if scratch.only_b else 0, row, none, top, bottom)
         for k in range(begin, end):
             w = smooth(bottom_b[k] / threshold, one)
-            out[k] = chosen(bottom_b[k], w * out[k] + (one - w) * top[k], top[k])
+            out[k] = select(bottom_b[k], w * out[k] + (one - w) * top[k], top[k])
 
 
 cdef inline void keep(Lanes* like, void* values, int n, stored* out) noexcept nogil:
@@ -185,7 +167,7 @@ cdef inline void keep(Lanes* like, void* values, int n, stored* out) noexcept no
     cdef double v
     cdef unsigned char[8] eight
     if Lanes is Floats and stored is cython.uchar:
-        keep_bytes(<float*>values, out if n == 8 else eight)
+        round_to_bytes(<float*>values, out if n == 8 else eight)
         if n < 8:
             memcpy(out, eight, n)
     else:
@@ -201,7 +183,7 @@ cdef inline void keep(Lanes* like, void* values, int n, stored* out) noexcept no
 
 
 cdef inline void paint(
-    Lanes* like, Desk desk, int samples, int nx, int ny, stored* out, Py_ssize_t stride
+    Lanes* like, Scratch scratch, int samples, int nx, int ny, stored* out, Py_ssize_t stride
 ) noexcept nogil:
     """Reconstruct a tile, some samples of which `cover` or `fade` have attenuated; the others count fully."""
     cdef int r, s, k
@@ -209,51 +191,48 @@ cdef inline void paint(
     cdef Lanes[32] values, top, bottom
     cdef int[8] shaded, faded
     cdef int n = vectors(ny, like)
-    cdef int rows = rows_of_strip(like)
-    cdef int strips = (ny + rows - 1) // rows
     fill(&half, T1)
     fill(&zero, 0.0)
-    fill(&most, desk.maxval)
-    turn_sets(desk.shaded_rows, shaded)
-    if not desk.only_b:
-        multiply(like, desk, 0, samples)
-        for r in range(strips):
-            add_seen(like, desk, 0, rows * r, shaded, top, bottom)
+    fill(&most, scratch.maxval)
+    transpose_sets(scratch.shaded_rows, shaded)
+    if not scratch.only_b:
+        multiply(like, scratch, 0, samples)
+        for r in range(ny):
+            add_seen(like, scratch, 0, r, shaded, top, bottom)
         while samples:
             s = lowest(samples)
             samples &= samples - 1
-            if desk.faded_rows[s]:
-                add_faded(like, desk, 0, s, 0, n, top, bottom)
+            if scratch.faded_rows[s]:
+                add_faded(like, scratch, 0, s, 0, n, top, bottom)
         for k in range(n):
             values[k] = top[k] / bottom[k]
-    if desk.only_b or any_below(bottom, 0, n, half):
-        turn_sets(desk.faded_rows, faded)
-        for r in range(strips):
-            k = vectors(rows * r, like)
-            s = faded[rows * r] | faded[rows * r + rows - 1]
-            if desk.only_b or any_below(bottom, k, k + vectors(rows, like), half):
-                blend(like, desk, rows * r, shaded, s, top, bottom, values)
+    if scratch.only_b or any_below(bottom, 0, n, half):
+        transpose_sets(scratch.faded_rows, faded)
+        for r in range(ny):
+            k = vectors(r, like)
+            if scratch.only_b or any_below(bottom, k, k + vectors(1, like), half):
+                blend(like, scratch, r, shaded, faded[r], top, bottom, values)
     if stored is not double:
         for k in range(n):
-            values[k] = less(more(values[k], zero), most)
+            values[k] = minimum(maximum(values[k], zero), most)
     for r in range(ny):
         keep(like, number_at(values, 8 * r, like), nx, out + stride * r)
 
 
-cdef void paint_tile(Desk desk, int samples, int nx, int ny, void* out, Py_ssize_t stride) noexcept nogil:
-    """`paint` in the desk's numbers; stride: of the rows of output, in its numbers."""
-    cdef Floats* floats = <Floats*>desk.bits
-    cdef Doubles* doubles = <Doubles*>desk.bits
-    if desk.single and desk.stored == 1:
-        paint(floats, desk, samples, nx, ny, <unsigned char*>out, stride)
-    elif desk.single:
-        paint(floats, desk, samples, nx, ny, <double*>out, stride)
-    elif desk.stored == 2:
-        paint(doubles, desk, samples, nx, ny, <unsigned short*>out, stride)
+cdef void paint_tile(Scratch scratch, int samples, int nx, int ny, void* out, Py_ssize_t stride) noexcept nogil:
+    """`paint` in the scratch's numbers; stride: of the rows of output, in its numbers."""
+    cdef Floats* floats = <Floats*>scratch.bits
+    cdef Doubles* doubles = <Doubles*>scratch.bits
+    if scratch.single and scratch.stored == 1:
+        paint(floats, scratch, samples, nx, ny, <unsigned char*>out, stride)
+    elif scratch.single:
+        paint(floats, scratch, samples, nx, ny, <double*>out, stride)
+    elif scratch.stored == 2:
+        paint(doubles, scratch, samples, nx, ny, <unsigned short*>out, stride)
     else:
-        paint(doubles, desk, samples, nx, ny, <double*>out, stride)
+        paint(doubles, scratch, samples, nx, ny, <double*>out, stride)
 
 
-def furnish(Desk desk) -> None:
-    """Have a desk's tiles summed up here."""
-    desk.paint = paint_tile
+def bind(Scratch scratch) -> None:
+    """Have a scratch's tiles summed up here."""
+    scratch.paint = paint_tile

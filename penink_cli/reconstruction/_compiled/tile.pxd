@@ -1,11 +1,11 @@
 cimport cython
 
 from penink_cli.reconstruction._compiled.search cimport Finder
-from penink_cli.reconstruction._compiled.surroundings cimport Surroundings
+from penink_cli.reconstruction._compiled.nearby_edges cimport NearbyEdges
 
 
 @cython.final
-cdef class Tile(Surroundings):
+cdef class Tile(NearbyEdges):
     cdef Finder finder
     cdef int gather_radius
     cdef bint gathered_wide

@@ -6,12 +6,12 @@ from libc.string cimport memset
 from penink_cli.geometry._compiled.predicates cimport orient
 from penink_cli.reconstruction._compiled.lanes cimport lowest
 from penink_cli.reconstruction._compiled.search cimport Finder
-from penink_cli.reconstruction._compiled.surroundings cimport Surroundings, zeros
+from penink_cli.reconstruction._compiled.nearby_edges cimport NearbyEdges, zeros
 
 cdef unsigned long long ALL = 0xFFFFFFFFFFFFFFFF
 
 
-cdef class Tile(Surroundings):
+cdef class Tile(NearbyEdges):
     """Work space of one thread for one tile after the other.
 
     hidden: for each sample the pixels that do not see it; shaded: the set of samples for which that is any.
@@ -20,7 +20,7 @@ cdef class Tile(Surroundings):
     """
 
     def __init__(self, Finder finder, double step_x, double step_y, int gather_radius):
-        Surroundings.__init__(self, finder.scene, step_x, step_y)
+        NearbyEdges.__init__(self, finder.scene, step_x, step_y)
         self.finder = finder
         self.gather_radius = gather_radius
         self.node_stamp = zeros(self.scene.n_nodes)

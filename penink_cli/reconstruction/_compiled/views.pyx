@@ -10,7 +10,7 @@ from libc.math cimport ceil, fabs, fabsf, floor, sqrt
 from libc.stdlib cimport free
 from penink_cli.geometry._compiled.predicates cimport orient
 from penink_cli.ground._compiled.memory cimport grow, room
-from penink_cli.reconstruction._compiled.lanes cimport Four, above_four, all_four, four_at, lowest
+from penink_cli.reconstruction._compiled.lanes cimport Four, greater_four, broadcast_four, load_four, lowest
 from penink_cli.reconstruction._compiled.scene cimport BLOCK, Scene
 
 cdef double SLACK = 1e-9  # more than rounding comes to in lengths of a few samples
@@ -162,9 +162,9 @@ cdef class Views:
         cdef float dx = <float>(self.scene.vx[b] - self.scene.vx[a])
         cdef float dy = <float>(self.scene.vy[b] - self.scene.vy[a])
         cdef float far = <float>1e-6 * (<float>self.window + 1)
-        cdef Four of_a = all_four(far * (fabsf(ax) + fabsf(ay)))
-        cdef Four of_b = all_four(far * (fabsf(bx) + fabsf(by)))
-        cdef Four of_edge = all_four(
+        cdef Four of_a = broadcast_four(far * (fabsf(ax) + fabsf(ay)))
+        cdef Four of_b = broadcast_four(far * (fabsf(bx) + fabsf(by)))
+        cdef Four of_edge = broadcast_four(
             far * (fabsf(dx) + fabsf(dy)) + <float>1e-6 * (fabsf(dx * ay) + fabsf(dy * ax))
         )
         cdef int side = 0
@@ -175,22 +175,22 @@ cdef class Views:
             if side == 0:
                 return
         for j in range(c0, c1 + 1, 4):
-            px = all_four(<float>(j - x)) + four_at(RAMP)
+            px = broadcast_four(<float>(j - x)) + load_four(RAMP)
             for i in range(r0, r1 + 1):
                 py = <float>(i - y)
-                value = all_four(ax * py) - all_four(ay) * px
-                a_left = above_four(value, of_a)
-                a_right = above_four(-value, of_a)
-                value = all_four(bx * py) - all_four(by) * px
-                b_left = above_four(value, of_b)
-                b_right = above_four(-value, of_b)
+                value = broadcast_four(ax * py) - broadcast_four(ay) * px
+                a_left = greater_four(value, of_a)
+                a_right = greater_four(-value, of_a)
+                value = broadcast_four(bx * py) - broadcast_four(by) * px
+                b_left = greater_four(value, of_b)
+                b_right = greater_four(-value, of_b)
                 if e < 0:
                     hidden = (a_left & b_right) | (a_right & b_left)
                     unsure = ~((a_left | a_right) & (b_left | b_right))
                 else:
-                    value = all_four(dx * (py - ay)) - all_four(dy) * (px - all_four(ax))
-                    far_side = above_four(-value if side > 0 else value, of_edge)
-                    near_side = above_four(value if side > 0 else -value, of_edge)
+                    value = broadcast_four(dx * (py - ay)) - broadcast_four(dy) * (px - broadcast_four(ax))
+                    far_side = greater_four(-value if side > 0 else value, of_edge)
+                    near_side = greater_four(value if side > 0 else -value, of_edge)
                     hidden = ((a_left & b_right) | (a_right & b_left)) & far_side
                     unsure = ~(hidden | near_side | (a_left & b_left) | (a_right & b_right))
                 unsure &= self.alive[i - r0] >> (j - c0) & 15

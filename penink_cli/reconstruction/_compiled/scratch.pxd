@@ -1,16 +1,16 @@
 cimport cython
 
-# The arithmetic on a desk's numbers, of which there are some makes: see `fades` and `sums`.
-ctypedef void (*Measure)(Desk desk, int slot, int ny, double x, double y) noexcept nogil
-ctypedef void (*Cover)(Desk desk, int s, unsigned long long hidden, int nx, int ny) noexcept nogil
+# The arithmetic on a scratch's numbers, of which there are some makes: see `fades` and `sums`.
+ctypedef void (*Measure)(Scratch scratch, int slot, int ny, double x, double y) noexcept nogil
+ctypedef void (*Cover)(Scratch scratch, int s, unsigned long long hidden, int nx, int ny) noexcept nogil
 ctypedef void (*Fade)(
-    Desk desk, int s, unsigned long long hidden, int bends, int ny, int down, int across
+    Scratch scratch, int s, unsigned long long hidden, int bends, int ny, int down, int across
 ) noexcept nogil
-ctypedef void (*Paint)(Desk desk, int samples, int nx, int ny, void* out, Py_ssize_t stride) noexcept nogil
+ctypedef void (*Paint)(Scratch scratch, int samples, int nx, int ny, void* out, Py_ssize_t stride) noexcept nogil
 
 
 @cython.final
-cdef class Desk:
+cdef class Scratch:
     cdef readonly bint single, only_b
     cdef readonly int stored
     cdef double radius, maxval

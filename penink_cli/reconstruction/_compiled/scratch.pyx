@@ -4,18 +4,18 @@
 from libc.stdlib cimport free
 from libc.string cimport memcpy, memset
 from penink_cli.ground._compiled.memory cimport grow, room
-from penink_cli.reconstruction._compiled.lanes cimport lanes_here
+from penink_cli.reconstruction._compiled.lanes cimport vector_bytes_here
 
 cdef Py_ssize_t NUMBER = sizeof(double)  # room for one, in floats too
 cdef Py_ssize_t LINE = 64  # bytes of a cache line: no row of numbers lies across two
 cdef Py_ssize_t PARTS = 256 * 8 + 2 * 8 + 2 * 32 + 2 * 32 + 32 * 64 + 16 + 2 * 16 * 64  # numbers
 
 
-cdef class Desk:
+cdef class Scratch:
     """Scratch of one thread, numbers in single or in double, aligned for any lanes they are computed in.
 
     single: in floats rather than doubles. stored: the bytes of a number of output, eight where it is kept as it is.
-    measure, cover, fade, paint: the arithmetic, see `fades` and `sums`, which furnish a desk with it.
+    measure, cover, fade, paint: the arithmetic, see `fades` and `sums`, which bind a scratch with it.
     bits: (256, 8) a byte as eight numbers, 0 or 1 for each bit.
     ux, uy: (8,) the columns and rows of pixels, relative to the cell and in units of the radius.
     kx: (2, 4, 8) weights of each column of samples at the columns of pixels, cubic and B-spline.
@@ -110,24 +110,24 @@ cdef char* aligned(void* place) noexcept nogil:
     return <char*>((at + LINE - 1) // LINE * LINE)
 
 
-cdef void measure_nothing(Desk desk, int slot, int ny, double x, double y) noexcept nogil:
-    """For a desk at rest."""
+cdef void measure_nothing(Scratch scratch, int slot, int ny, double x, double y) noexcept nogil:
+    """For benchmarks, which tell how long everything else takes."""
 
 
-cdef void cover_nothing(Desk desk, int s, unsigned long long hidden, int nx, int ny) noexcept nogil:
-    """For a desk at rest."""
+cdef void cover_nothing(Scratch scratch, int s, unsigned long long hidden, int nx, int ny) noexcept nogil:
+    """For benchmarks, which tell how long everything else takes."""
 
 
 cdef void fade_nothing(
-    Desk desk, int s, unsigned long long hidden, int bends, int ny, int down, int across
+    Scratch scratch, int s, unsigned long long hidden, int bends, int ny, int down, int across
 ) noexcept nogil:
-    """For a desk at rest."""
+    """For benchmarks, which tell how long everything else takes."""
 
 
-cdef void paint_nothing(Desk desk, int samples, int nx, int ny, void* out, Py_ssize_t stride) noexcept nogil:
-    """For a desk at rest."""
+cdef void paint_nothing(Scratch scratch, int samples, int nx, int ny, void* out, Py_ssize_t stride) noexcept nogil:
+    """For benchmarks, which tell how long everything else takes."""
 
 
 def lanes() -> int:
     """How many bytes of numbers side by side the processor this runs on is good at: 16, 32 or 64."""
-    return lanes_here()
+    return vector_bytes_here()

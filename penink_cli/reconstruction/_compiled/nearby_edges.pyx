@@ -9,13 +9,13 @@ from libc.stdlib cimport free
 from libc.string cimport memset
 from penink_cli.ground._compiled.memory cimport grow, room
 from penink_cli.reconstruction._compiled.lanes cimport (
-    Four, above_four, all_four, four_at, lanes_here, lowest, size_four,
+    Four, greater_four, broadcast_four, load_four, vector_bytes_here, lowest, abs_four,
 )
 from penink_cli.reconstruction._compiled.pixels cimport Pixels
 from penink_cli.reconstruction._compiled.scene cimport Scene, side_of_query
 
 
-cdef class Surroundings(Pixels):
+cdef class NearbyEdges(Pixels):
     """The edges gathered around one tile after the other.
 
     column, row: of the samples, within the frame. sx, sy: where they lie relative to the cell.
@@ -27,7 +27,7 @@ cdef class Surroundings(Pixels):
     """
 
     def __init__(self, Scene scene, double step_x, double step_y):
-        self.wide = lanes_here() > 16
+        self.wide = vector_bytes_here() > 16
         self.scene = scene
         self.step_x = step_x
         self.step_y = step_y
@@ -160,16 +160,16 @@ cdef class Surroundings(Pixels):
         cdef float dy
         cdef Four value, extent
         cdef int positive = 0, negative = 0
-        cdef Four sx = four_at(self.sx)
-        cdef Four dx = all_four(self.lx[k]) - sx
-        cdef Four mx = all_four(self.mid_x) - sx
-        cdef Four wide = size_four(dx) * all_four(self.half_y)
+        cdef Four sx = load_four(self.sx)
+        cdef Four dx = broadcast_four(self.lx[k]) - sx
+        cdef Four mx = broadcast_four(self.mid_x) - sx
+        cdef Four wide = abs_four(dx) * broadcast_four(self.half_y)
         for j in range(4):
             dy = self.ly[k] - self.sy[j]
-            value = dx * all_four(self.mid_y - self.sy[j]) - all_four(dy) * mx
-            extent = wide + all_four(fabsf(dy) * self.half_x)
-            positive |= above_four(value, extent) << (4 * j)
-            negative |= above_four(-value, extent) << (4 * j)
+            value = dx * broadcast_four(self.mid_y - self.sy[j]) - broadcast_four(dy) * mx
+            extent = wide + broadcast_four(fabsf(dy) * self.half_x)
+            positive |= greater_four(value, extent) << (4 * j)
+            negative |= greater_four(-value, extent) << (4 * j)
         self.positive[k] = positive
         self.negative[k] = negative
 
@@ -193,12 +193,12 @@ cdef class Surroundings(Pixels):
         self.tile_side[k] = 1 if middle > extent else (-1 if -middle > extent else 0)
         if not samples_too:
             return
-        along = all_four(dy) * (four_at(self.sx) - all_four(ax))
-        least = all_four(slack)
+        along = broadcast_four(dy) * (load_four(self.sx) - broadcast_four(ax))
+        least = broadcast_four(slack)
         for j in range(4):
-            value = all_four(dx * (self.sy[j] - ay)) - along
-            positive |= above_four(value, least) << (4 * j)
-            negative |= above_four(-value, least) << (4 * j)
+            value = broadcast_four(dx * (self.sy[j] - ay)) - along
+            positive |= greater_four(value, least) << (4 * j)
+            negative |= greater_four(-value, least) << (4 * j)
         self.sample_side[k] = positive
         negative = 0xFFFF & ~(positive | negative)  # those too near its line for that
         while negative:

@@ -6,7 +6,7 @@ from penink_cli.reconstruction._compiled.scene cimport Scene
 cdef int* zeros(Py_ssize_t n) except NULL nogil
 
 
-cdef class Surroundings(Pixels):
+cdef class NearbyEdges(Pixels):
     cdef Scene scene
     cdef float[4] sx
     cdef float[4] sy
