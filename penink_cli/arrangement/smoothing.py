@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from penink_cli.arrangement._compiled import curves as _curves
+from penink_cli.arrangement._compiled import smoothing as _smoothing
 from penink_cli.arrangement.chains import Chains
 from penink_cli.arrangement.gradient import EdgePoints
 from penink_cli.ground import exact
@@ -47,7 +47,7 @@ def smooth(position: Floats, chains: Chains, error: Floats) -> Floats:
     roughness = _SMOOTHEST
     while True:
         places = np.ascontiguousarray(position[order])
-        _curves.smooth(places, roughness**2 / error[order] ** 2, first, room)
+        _smoothing.smooth(places, roughness**2 / error[order] ** 2, first, room)
         moved = exact.length(places - position[order]) / error[order]
         if roughness > _ROUGHEST or np.median(moved[inner]) <= _MOST_MOVED:
             break

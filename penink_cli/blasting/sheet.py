@@ -13,7 +13,7 @@ look-up a sample.
 A device paints every pixel that a stroke touches. It thereby widens a stroke of direction
 θ by (|cos θ| + |sin θ|) of its pixels; `gain_pt` is the size of that pixel, 0 for none.
 
-This module alone imports the compiled kernels `_ink`, `_place` and `_press`.
+This module alone imports the compiled kernels `_ink`, `_placing` and `_press`.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ import numpy as np
 import numpy.typing as npt
 
 from penink_cli.blasting._compiled import ink as _ink
-from penink_cli.blasting._compiled import place as _place
+from penink_cli.blasting._compiled import placing as _placing
 from penink_cli.blasting._compiled import press as _press
 from penink_cli.blasting.curves import Polylines, pieces_of, sample
 from penink_cli.blasting.low_pass import Cells, LowPass
@@ -188,7 +188,7 @@ class Sheet:
         widths_sub = np.ascontiguousarray(widths * self.pitch)
 
         def run(order: Ints) -> None:
-            _place.place(
+            _placing.place(
                 self.bits, self.residual, self.tone, self.low_pass.kernel, self.low_pass.step, self.weight,
                 self.low_pass.profile,
                 points, lines.first, widths_sub, walls, order, self.gain, moves, spacing,

@@ -1,6 +1,6 @@
 """Where strokes must end: strong discontinuity edges, and the frame.
 
-This module alone imports the compiled kernel `_walls`.
+This module alone imports the compiled kernel `_crossings`.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from penink_cli.blasting import curves
-from penink_cli.blasting._compiled import walls as _walls
+from penink_cli.blasting._compiled import crossings as _crossings
 from penink_cli.blasting.sheet import STEP, Sheet
 from penink_cli.ground.model import EdgeList, Floats, Ints
 
@@ -174,7 +174,7 @@ def cut(walls: Walls, lines: curves.Polylines, painted: Floats, slack: tuple[Flo
     points = np.ascontiguousarray(lines.points)
     while True:
         who, wall_at, where, sine = np.empty(room, np.int64), np.empty(room, np.int64), np.empty(room), np.empty(room)
-        found = _walls.crossings(
+        found = _crossings.crossings(
             points, lines.first, walls.segments, walls.begin, walls.items, walls.columns, walls.rows,
             0.0, 0.0, CELL_PT, who, wall_at, where, sine,
         )  # fmt: skip

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.ndimage import gaussian_filter, gaussian_filter1d
 
-from penink_cli.arrangement._compiled import curves as _curves
+from penink_cli.arrangement._compiled import smoothing as _smoothing
 from penink_cli.arrangement.chains import Chains
 from penink_cli.arrangement.detection import detect_edges
 from penink_cli.arrangement.smoothing import smooth
@@ -34,7 +34,7 @@ def test_a_smooth_run_is_the_least_of_its_sum():
     n = 40
     given, weight = random.normal(0, 1, (n, 2)), random.uniform(0.01, 2, n)
     found = given.copy()
-    _curves.smooth(found, weight, np.array([0, 3, n], np.int32), np.empty((n, 4)))
+    _smoothing.smooth(found, weight, np.array([0, 3, n], np.int32), np.empty((n, 4)))
     assert np.array_equal(found[:3], given[:3])  # too short to have a third difference
     third = np.diff(np.eye(n - 3), 3, axis=0)
     slow = np.linalg.solve(np.diag(weight[3:]) + third.T @ third, weight[3:, None] * given[3:])

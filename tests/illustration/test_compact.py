@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -14,6 +16,35 @@ from penink_cli.ground.errors import FormatError, LimitError, PeninkError
 from penink_cli.ground.model import Directions, EdgeList, GreyImage
 from tests.conftest import ROOT
 from tests.illustration.conftest import grey, square, whirl
+
+#: What the format's first version writes, in hexadecimal. A form that gives other bytes is another version.
+VECTORS = json.loads((ROOT / "tests/illustration/compact_vectors.json").read_text())
+
+
+def by_formula() -> dict[str, tuple[bytes, object]]:
+    """Contents that a few whole numbers describe: their compact bytes, and what reads them again."""
+    y, x = np.mgrid[:12, :16]
+    samples = GreyImage(((7 * x * x + 13 * y + x * y) % 64).astype(np.uint8), 63)
+    corner = np.array([[2, 2], [12, 3], [13, 10], [3, 9], [8, 6]], float)
+    edges = EdgeList(16, 12, corner, np.array([[0, 1], [1, 2], [2, 3], [3, 0], [2, 4]]), np.arange(5) / 16)
+    text = b'{"name": "vectors", "numbers": [1, 2, 3]}'
+    return {
+        "samples": (compact.samples_bytes(samples), samples),
+        "edges": (compact.edges_bytes(edges, 256, 192), edges),
+        "text": (compact.text_bytes(text), text),
+    }
+
+
+def test_the_bytes_are_those_of_the_first_version():
+    assert {name: data.hex() for name, (data, _) in by_formula().items()} == VECTORS
+
+
+def test_the_first_version_is_read():
+    given = {name: content for name, (_, content) in by_formula().items()}
+    read = {name: bytes.fromhex(data) for name, data in VECTORS.items()}
+    assert np.array_equal(compact.samples_from(read["samples"], 10**6).values, given["samples"].values)
+    assert as_set(compact.edges_from(read["edges"])) == as_set(given["edges"])
+    assert compact.text_from(read["text"]) == given["text"]
 
 
 def as_set(edges: EdgeList) -> set[tuple]:

@@ -7,6 +7,9 @@ PAQ"). All of it is integer arithmetic: the same numbers give the same bytes on 
 general compressor's library promises from no version to the next. Measured on photographs reduced to
 128 × 128 samples of 6 bits: 2.6 to 4.3 bits a sample where PNG needs 3.5 to 5.3.
 
+What it is worth (`python -m tests.benchmarks.worth coder`, three photographs reduced 4 times, 8 bits): samples take .88
+to .93 of PNG and .86 to .89 of xz, edges .75 to .79 of their steps deflated and .80 to .87 of xz, strengths included.
+
 One `Coder` both writes and reads. Each method takes the value to write and returns it, or
 takes anything and returns the value read, so that writer and reader cannot disagree on the model.
 """

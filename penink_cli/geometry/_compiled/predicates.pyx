@@ -1,9 +1,14 @@
 # cython: boundscheck=False, wraparound=False, cdivision=True
 """The exact orientation predicate that every geometric decision of the project rests on.
 
-A double evaluation with Shewchuk's error bound settles nearly every call. The rest is
-summed exactly: six products, each split into its rounded value and its rounding error,
-added up as a non-overlapping expansion whose last non-zero term has the sign of the sum.
+    a ────────→ b          x is to the right, y is DOWN:
+         ·                 orient(a, b, c) = sign of (b − a) × (c − a)
+           ·               is +1 where c lies as drawn here, to the right of one who goes from a to b,
+             c             −1 to the left, and 0 on the line.
+
+A double evaluation with an error bound settles nearly every call. The rest is summed exactly: six products, each split
+into its rounded value and its rounding error, added up as a non-overlapping expansion whose last non-zero term has the
+sign of the sum. Bound and expansions: Shewchuk, Adaptive Precision Floating-Point Arithmetic, 1997.
 """
 
 from libc.math cimport fabs
@@ -13,7 +18,7 @@ cdef double SPLITTER = 134217729.0  # 2²⁷ + 1
 
 
 cdef int orient(double ax, double ay, double bx, double by, double cx, double cy) noexcept nogil:
-    """Exact sign of (b − a) × (c − a)."""
+    """Exact sign of (b − a) × (c − a): 1, −1 or 0."""
     cdef double left = (bx - ax) * (cy - ay)
     cdef double right = (by - ay) * (cx - ax)
     cdef double area = left - right

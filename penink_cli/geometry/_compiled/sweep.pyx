@@ -2,9 +2,17 @@
 """A sweep that finds whether any two edges meet other than at a shared vertex (Shamos and Hoey 1976), exactly.
 
 Vertices are visited by x, then y. The edges that the sweep line crosses are kept in their order along it, in a treap
-whose split at the visited vertex yields the edges below it, through it and above it. As long as nothing wrong has been
-seen the order is true, and the leftmost wrong meeting is always one of: an edge through a vertex that is not its end,
-two edges leaving a vertex in one direction, two neighbours that cross.
+whose split at the visited vertex v yields the edges below it, through it and above it:
+
+    ─────────────┼────── high      above    begins with `high`, the neighbour of v on that side
+                 │
+    through ─────v────── leaving   through  edges that end at v; another one that goes through v is wrong
+                 │╲                leaving  edges that start at v, by slope; they take the place of `through`
+    ─────────────┼──╲─── low       below    ends with `low`, the neighbour of v on that side
+      sweep line, y grows      drawn with y upwards: what is "above" has the larger y
+
+As long as nothing wrong has been seen the order is true, and the leftmost wrong meeting is always one of: an edge
+through a vertex that is not its end, two edges leaving a vertex in one direction, two neighbours that cross.
 """
 
 from libc.stdlib cimport free

@@ -1,10 +1,18 @@
 # cython: boundscheck=False, wraparound=False, cdivision=True
 """The path graph of a scene: its nodes, where a path can bend, and the arcs between them (section 2.2).
 
-A *node* is a vertex on the one side where a path can bend round it: its reflex sector runs,
-turning positively, from the edge to `low` to the edge to `high`. A shortest path is taut, so
-a leg may meet a node only where both edges lie on one side of the leg's line or on it. That
-one test replaces "within the sector" and prunes nearly all bends of a smooth chain.
+A *node* is a vertex v on the one side where a path can bend round it. Its sector is reflex: of π or more, with no edge
+in it. It runs from the edge to `low` to the edge to `high`, in the direction that `orient` calls positive.
+
+      high       low         x right, y down; turning positively is clockwise
+          ╲     ╱
+           ╲   ╱             a path bends round v like a thread round a nail:
+            ╲ ╱              p ── v ── q
+     p ╶╶╶╶╶╶╶v╶╶╶╶╶╶╶ q
+        the sector of v      a taut leg has both edges on one side of its line, or on it
+
+A shortest path is taut, so a leg may meet a node only where that holds of its line. This one test replaces "within the
+sector" and leaves out nearly all bends of a smooth chain.
 """
 
 from libc.math cimport sqrt

@@ -1,9 +1,16 @@
 # cython: boundscheck=False, wraparound=False, cdivision=True
 """Which points see each other past the discontinuity edges (section 2.2).
 
-Everything is in sample units: sample (row i, column j) is the point (j, i). Decisions are
-exact. A *query* (output pixel or sample) stands for p + (ε, ε²), so it is never on an edge,
-on a vertex or in line with one; a tie goes by the sign of the next power of ε.
+Everything is in sample units: sample (row i, column j) is the point (j, i). Decisions are exact.
+
+A *query* (output pixel or sample) is never on an edge, on a vertex or in line with one. It stands for a point that is
+moved by a vector too short to matter otherwise, d = (ε, ε²) with ε > 0 as small as need be:
+
+         b          q lies on the line from a to b. The point meant is q + d, a little to the right,
+        ╱           and by far less down. So it is on the same side as d is of the direction b − a:
+       q·→ q + d    the sign of (b − a) × d = (bx − ax) ε² − (by − ay) ε, which for small ε is
+      ╱             that of −(by − ay), or where by = ay that of bx − ax.
+     a
 """
 
 from libc.stdlib cimport free
@@ -16,7 +23,7 @@ cdef int FEW = 3  # edges in a row of cells that are looked at without finding t
 
 
 cdef int tie(double x, double y) noexcept nogil:
-    """Sign of (x, y) × (ε, ε²) reversed in no way: −sign(y), else sign(x)."""
+    """Sign of (x, y) × (ε, ε²) = x ε² − y ε for a small ε > 0: that of −y, or of x where y is 0."""
     if y != 0.0:
         return -1 if y > 0.0 else 1
     if x != 0.0:

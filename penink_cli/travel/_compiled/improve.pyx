@@ -11,6 +11,9 @@ A stroke's ends are the points 2s (its start) and 2s + 1; flips[s] says it is dr
 Candidates come from the nearest neighbours of each end, and a stroke is looked at again only
 when one of its links has changed. Where it ends is a count of steps, not a clock, so that the
 bytes are the same on every machine.
+
+What it is worth (`python -m tests.benchmarks.worth tours`): 20 000 short strokes anywhere take .77 of the way that
+always the nearest next takes, 1000 take .79, for .3 s and .01 s of the processor. A plotter needs minutes for that way.
 """
 
 from libc.math cimport sqrt
