@@ -135,7 +135,7 @@ def pairs(
         for r in range(change.shape[0] - 1):
             for i in range(columns - 1):
                 for h in range(2):
-                    # the right and the left triangle: from the corner to a node beside it, on to the end, straight there
+                    # the right and the left triangle: from the corner to a node beside it, to the end, straight there
                     e[0] = 3 * (r * columns + i) + h
                     e[1] = 3 * ((r + h) * columns + i + 1 - h) + 1 - h
                     e[2] = 3 * (r * columns + i) + 2

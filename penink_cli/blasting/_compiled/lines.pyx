@@ -90,7 +90,9 @@ def look_up(
             out[p] = values[j, i]
 
 
-def smooth(double[:, ::1] points, const long long[::1] first, const unsigned char[::1] rounds, const unsigned char[::1] ring):
+def smooth(
+    double[:, ::1] points, const long long[::1] first, const unsigned char[::1] rounds, const unsigned char[::1] ring
+):
     """Move each point to the binomial mean of itself and its neighbours, as many rounds as are asked for at it.
 
     The ends of a line stay; a ring has none.
@@ -275,7 +277,7 @@ cdef inline void _by_hand(
 cdef double _fit(
     const double *p, Py_ssize_t steps, double step, double s0, double s1, const double *hand, Py_ssize_t k, double *out
 ) noexcept nogil:
-    """Control points (3 k + 1, 2) of the stroke as k cubics, through it at every third; returns how far they are off."""
+    """Control points (3 k + 1, 2) of the stroke as k cubics, through it at every third; returns how far off."""
     cdef Py_ssize_t m, t
     cdef double q1x, q1y, q2x, q2y, x, y, u, v, w, dx, dy, nx, ny
     cdef double worst = 0.0
@@ -352,5 +354,6 @@ def draw(
             steps = first[line[n] + 1] - first[line[n]] - 1
             step = length[line[n]] / steps
             _fit(
-                &points[first[line[n]], 0], steps, step, span[n, 0], span[n, 1], &hand[n, 0], count[n], &out[begin[n], 0]
+                &points[first[line[n]], 0], steps, step, span[n, 0], span[n, 1], &hand[n, 0], count[n],
+                &out[begin[n], 0],
             )

@@ -18,7 +18,8 @@ cdef inline void _turned(float turns, float *c, float *s) noexcept nogil:
     cdef float q = floorf(y + <float>0.5)
     cdef float z = (y - q) * <float>1.5707963267948966
     cdef float z2 = z * z
-    cdef float sine = z * (<float>1.0 + z2 * (<float>-0.16666667 + z2 * (<float>0.008333333 - z2 * <float>0.00019841270)))
+    cdef float tail = <float>-0.16666667 + z2 * (<float>0.008333333 - z2 * <float>0.00019841270)
+    cdef float sine = z * (<float>1.0 + z2 * tail)
     cdef float cosine = <float>1.0 + z2 * (<float>-0.5 + z2 * (<float>0.041666667 + z2 * (
         <float>-0.0013888889 + z2 * <float>0.000024801587)))
     cdef int k = (<int>q) & 3
@@ -178,13 +179,13 @@ def relax(
 ):
     """Fill the nodes of a band from the coarser level, then let each agree with its neighbours, red and black in turn.
 
-    links, psi: (rows of the band, columns, …); low, even: its first row on the sheet. coarse: the coarser level's ψ, all
-    rows, or none at the coarsest level, where chance begins. Rows near a border of the band that is none of the sheet
+    links, psi: (rows of the band, columns, …); low, even: its first row on the sheet. coarse: the coarser level's ψ,
+    all rows, or none at the coarsest level, where chance begins. Rows near a border of the band that is not the sheet's
     are wrong up to 2 sweeps + 2 rows off.
     """
     cdef Py_ssize_t rows = psi.shape[0]
     cdef Py_ssize_t columns = psi.shape[1]
-    cdef Py_ssize_t r, i, t, colour, turn
+    cdef Py_ssize_t r, i, colour, turn
     cdef float *z = &psi[0, 0, 0]
     cdef const float *l = &links[0, 0, 0]
     with nogil:
@@ -207,7 +208,7 @@ def relax(
             for i in range(columns):
                 if psi[r, i, 0] * psi[r, i, 0] + psi[r, i, 1] * psi[r, i, 1] < <float>0.25:
                     _turned(_chance(seed, (low + r) * columns + i), &psi[r, i, 0], &psi[r, i, 1])
-        for t in range(sweeps):
+        for _ in range(sweeps):
             for colour in range(2):
                 for r in range(rows):
                     for i in range((r + colour) & 1, columns, 2):

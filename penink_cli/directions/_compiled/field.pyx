@@ -1,7 +1,6 @@
 # cython: language_level=3, boundscheck=False, wraparound=False, cdivision=True
 """What surrounds a place, and the smooth solve of a field: sums in one fixed order, the same on every machine."""
 
-from libc.math cimport sqrt
 
 COMPILED = True
 
@@ -61,8 +60,8 @@ def solve(
     """Solve A x = b for p planes at once by conjugate gradients, preconditioned by the diagonal; the rounds it took.
 
     A is own on the diagonal and the graph's Laplacian: right (h, w) the links to the next in the row, down those to the
-    next row; the last column of the one and the last row of the other are not used. x: (h, w, p), begun from. room: four
-    times as much. Ends where the residual is below the tolerance, relative to b, in the preconditioner's measure.
+    next row; the last column of the one and the last row of the other are not used. x: (h, w, p), begun from. room:
+    four times as much. Ends where the residual is below the tolerance, relative to b, in the preconditioner's measure.
     """
     cdef Py_ssize_t h = own.shape[0], w = own.shape[1], p = x.shape[2], i, j, k
     cdef double[:, :, ::1] r = room[0], z = room[1], d = room[2], q = room[3]

@@ -186,7 +186,6 @@ def scan(
     cdef Bits bits
     cdef int result = _WHOLE, run = 0, c, x, y, i, j, number = 0
     cdef Py_ssize_t unit, units = <Py_ssize_t>across * down
-    cdef uint64_t none = 0
     cdef uint64_t* block
     bits.data, bits.at, bits.end = &data[0], start, data.shape[0]
     bits.held = 0

@@ -22,7 +22,9 @@ cdef inline float _at(const float *layer, Py_ssize_t h, Py_ssize_t w, double x, 
     i, j = <Py_ssize_t>y, <Py_ssize_t>x
     fy, fx = y - i, x - j
     layer += i * w + j
-    return <float>((layer[0] * (1.0 - fx) + layer[1] * fx) * (1.0 - fy) + (layer[w] * (1.0 - fx) + layer[w + 1] * fx) * fy)
+    return <float>(
+        (layer[0] * (1.0 - fx) + layer[1] * fx) * (1.0 - fy) + (layer[w] * (1.0 - fx) + layer[w + 1] * fx) * fy
+    )
 
 
 cdef inline double _towards(const float[:, :, ::1] bank, Py_ssize_t f, double x, double y) noexcept nogil:
@@ -163,7 +165,8 @@ def follow(
             points[at, 0], points[at, 1], points[at, 2], points[at, 3] = j, i, bank[k, i, j], 4 * k
             at += 1
             for t in range(a):
-                points[at, 0], points[at, 1], points[at, 2], points[at, 3] = there[t, 0], there[t, 1], there[t, 2], there[t, 3]
+                points[at, 0], points[at, 1] = there[t, 0], there[t, 1]
+                points[at, 2], points[at, 3] = there[t, 2], there[t, 3]
                 at += 1
             _take(used, points[size:at], at - size, wide)
             if at - size < least:
@@ -174,9 +177,11 @@ def follow(
     return s, lines, s < seeds.shape[0]
 
 
-cdef void _smooth(const double[:, ::1] line, Py_ssize_t m, Py_ssize_t channel, const double[::1] taps, double[:, ::1] out,
-                  bint ring, bint mirror) noexcept nogil:
-    """One channel of a line's points low-passed: beyond its ends as mirrored in them (points) or in value (responses)."""
+cdef void _smooth(
+    const double[:, ::1] line, Py_ssize_t m, Py_ssize_t channel, const double[::1] taps, double[:, ::1] out,
+    bint ring, bint mirror
+) noexcept nogil:
+    """One channel of a line's points low-passed; beyond its ends points are mirrored in them, responses in value."""
     cdef Py_ssize_t i, t, a, b
     cdef double v, va, vb
     for i in range(m):
@@ -207,7 +212,7 @@ def measure(
     narrow, wide: half a low-pass for places and for responses. part: ends are trimmed below this part of the mean
     response. around, ground (h, w): the surroundings' response and tone; cos2, sin2: the field (double angle).
     span: (n, 2) first and last (exclusive) of the points that are left. told: (n, 7) length, mean response, turning in
-    all (radians, as twice the sines of half of them), mean of around, mean of ground, mean of cos 2Δ to the field, 1 where closed.
+    all (radians, as twice the sines of half of them), means of around, ground and cos 2Δ to the field, 1 if closed.
     """
     cdef Py_ssize_t i, t, a, b, m, r, c
     cdef double mean, dx, dy, ex, ey, length, other, turn, step, co, si, agree, w

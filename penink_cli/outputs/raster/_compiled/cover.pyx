@@ -208,8 +208,8 @@ cdef void _segment(
 
 def band(
     const double[:, ::1] points, const long long[::1] first, const double[::1] radii, const double[::1] knot_radii,
-    const int[::1] members, Py_ssize_t top, unsigned short[:, ::1] bits, unsigned long long[::1] counts, const unsigned char[::1] greys,
-    unsigned char[:, ::1] out,
+    const int[::1] members, Py_ssize_t top, unsigned short[:, ::1] bits, unsigned long long[::1] counts,
+    const unsigned char[::1] greys, unsigned char[:, ::1] out,
 ) -> None:
     """Draw the strokes `members` into the pixel rows from `top` on.
 
