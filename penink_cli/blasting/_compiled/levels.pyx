@@ -35,7 +35,8 @@ def crossings(
 ):
     """Changes of phase along the links of node rows low … high, and how many level lines cross each.
 
-    wanted: a link between two nodes that are not is none. Of the last row only links to the right are looked at: it is the next band's first one.
+    wanted: a link between two nodes that are not is none. Of the last row only links to the right are looked at: it is
+    the next band's first one.
     change, sign: (high - low + 1, columns, 3); sign is nought where there is no link. begin: where the crossings of
     each link start, one more than there are links. Returns the number of all.
     """
@@ -230,13 +231,13 @@ def gather(
     const float[:, ::1] points, const long long[::1] begin, const long long[::1] count, const long long[::1] step,
     float[:, ::1] out,
 ):
-    """Runs of points one after the other: of run k count[k] points from begin[k] on, step[k] 1 forwards, -1 backwards."""
-    cdef Py_ssize_t k, p, i
+    """Runs of points one after the other: of run k count[k] points from begin[k] on by step[k], 1 or -1."""
+    cdef Py_ssize_t k, p
     cdef Py_ssize_t n = 0
     with nogil:
         for k in range(begin.shape[0]):
             p = begin[k]
-            for i in range(count[k]):
+            for _ in range(count[k]):
                 out[n, 0] = points[p, 0]
                 out[n, 1] = points[p, 1]
                 n += 1

@@ -77,7 +77,8 @@ def even(
 
 
 def look_up(
-    const float[:, ::1] values, const double[:, ::1] points, double left, double top, double dx, double dy, float[::1] out
+    const float[:, ::1] values, const double[:, ::1] points, double left, double top, double dx, double dy,
+    float[::1] out,
 ):
     """The value at the node nearest to each point, node (row j, column i) being at (left + i dx, top + j dy)."""
     cdef Py_ssize_t p, i, j

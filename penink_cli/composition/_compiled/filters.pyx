@@ -6,8 +6,6 @@ Every number is a sum in one fixed order, whatever rows a call is given, so thre
 
 from libc.stdlib cimport free, malloc
 
-COMPILED = True
-
 ctypedef fused stored:
     const unsigned char
     const unsigned short

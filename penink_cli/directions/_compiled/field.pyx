@@ -1,8 +1,5 @@
-# cython: language_level=3, boundscheck=False, wraparound=False, cdivision=True
+# cython: boundscheck=False, wraparound=False, cdivision=True
 """What surrounds a place, and the smooth solve of a field: sums in one fixed order, the same on every machine."""
-
-
-COMPILED = True
 
 
 def surrounded(const unsigned char[:, ::1] walls, double reach, const double[:, ::1] rays, double[:, ::1] out):

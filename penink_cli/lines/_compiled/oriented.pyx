@@ -1,7 +1,5 @@
-# cython: language_level=3, boundscheck=False, wraparound=False, cdivision=True
+# cython: boundscheck=False, wraparound=False, cdivision=True
 """Compiled: a picture through a bank of oriented filters. See oriented.py."""
-
-COMPILED = True
 
 
 def respond(

@@ -1,12 +1,10 @@
-# cython: language_level=3, boundscheck=False, wraparound=False, cdivision=True
+# cython: boundscheck=False, wraparound=False, cdivision=True
 """Compiled: lines followed through the responses of a bank of oriented filters. See tracing.py.
 
 Directions are counted in quarters of a bin: 4 n of them are half a turn, 8 n a whole one.
 """
 
 from libc.math cimport sqrt
-
-COMPILED = True
 
 cdef enum:
     WEAK = 6  # steps that a line may go on below the lower threshold
