@@ -118,10 +118,14 @@ cpdef bint runs(
                 v = dv + t * (v1 + t * (v2 + t * v3)) + aside
                 if line[s] >= 0:
                     aim = v
-                    v += WAVER[0] * sine_of(WAVER[1] * u + WAVER[2] * v) + WAVER[3] * sine_of(WAVER[4] * u + WAVER[5] * v)
+                    v += (
+                        WAVER[0] * sine_of(WAVER[1] * u + WAVER[2] * v)
+                        + WAVER[3] * sine_of(WAVER[4] * u + WAVER[5] * v)
+                    )
                     if wave > 0:
                         v += wave * (
-                            WAVE[0] * sine_of(turn * (u + aim / WAVE[1])) + WAVE[2] * sine_of(turn * (WAVE[3] * u - aim / WAVE[4]))
+                            WAVE[0] * sine_of(turn * (u + aim / WAVE[1]))
+                            + WAVE[2] * sine_of(turn * (WAVE[3] * u - aim / WAVE[4]))
                         )
                 x = u * cosine - v * sine
                 y = u * sine + v * cosine

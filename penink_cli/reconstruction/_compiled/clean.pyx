@@ -176,7 +176,8 @@ cdef double _least_contaminated(
                         best = max(best, distance[i - reach + r, j - reach + c])
                     else:
                         w = (r - reach) * (r - reach) + (c - reach) * (c - reach)
-                        w = exponential(-w / (2 * spread * spread) + 6 * (distance[i - reach + r, j - reach + c] - best))
+                        w = -w / (2 * spread * spread) + 6 * (distance[i - reach + r, j - reach + c] - best)
+                        w = exponential(w)
                         s += w
                         sv += w * values[i - reach + r, j - reach + c]
                 bits >>= 1
