@@ -7,9 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from penink_cli.blasting import hatching, marks, tile
+from penink_cli.blasting import hatching, marks, stroke_set, tile
 from penink_cli.blasting.sheet import Cells, Sheet, coverage, resample
 from penink_cli.blasting.threshold import blast_by_threshold
+from penink_cli.ground.angles import direction
 from penink_cli.ground.device import MEAN
 from penink_cli.ground.errors import ParameterError
 from penink_cli.ground.model import Directions, EdgeList, Engraving, Floats, Lines, Strokes, Texture
@@ -20,6 +21,8 @@ RULES = ("best", "strict", "threshold", "engrave")
 MARK_PT = 0.5
 #: Cells of which so much lies within a point of a small dark thing belong to it.
 NEAR_MARK = 0.3
+#: Degrees at which a set of strokes lies where no directions are given.
+ANGLE = -45.0
 #: How often a blast calls its `tick`, at the most.
 TICKS = 5
 
@@ -52,7 +55,7 @@ def blast(
         illustration that draws itself does on a device. It knows no seed. "engrave": lines that swell, those of the
         texture if it has them, as "best" draws such a texture.
     outlines: strokes drawn already, whose ink counts; they are not among those returned.
-    directions: a field along which hatching runs, in place of its layers' angles.
+    directions: a field along which hatching and sets of strokes run, in place of fixed angles.
     lines: telling lines of the picture: light ones are left out, and beside the dark ones, which are drawn already and
         among the outlines, hatching keeps clear.
     tick: called now and then, `TICKS` times at the most.
@@ -62,6 +65,8 @@ def blast(
     """
     if rule not in RULES:
         raise ParameterError(f"rule {rule!r}: known are {', '.join(RULES)}")
+    if texture.oriented and rule != "best":
+        raise ParameterError(f"the texture {texture.name} is a set of strokes, for the rule best and not {rule}")
     told = None
     if lines is not None:
         from penink_cli.blasting import telling  # needs the rooms of lines and composition
@@ -81,7 +86,12 @@ def blast(
     if len(small):  # nor are they thin things to be drawn along
         near = coverage(small, sheet.rows, sheet.columns, 2.0) > NEAR_MARK
         told = near if told is None else told | near
-    if rule == "engrave" or (rule == "best" and texture.engraving is not None and pen_pt is None):
+    if texture.oriented:
+        examples = texture.strokes
+        way = along_one_angle(sheet) if directions is None else field_at(sheet, directions, edges)
+        layers = stroke_set.passes(examples)
+        strokes = hatching.hatch_sheet(sheet, layers, edges, gain, seed, pen_pt, tick, way, told, examples)
+    elif rule == "engrave" or (rule == "best" and texture.engraving is not None and pen_pt is None):
         from penink_cli.blasting.engraving import engrave
 
         kind = texture.engraving or Engraving(angle=texture.layers[0].angle if texture.layers else Engraving.angle)
@@ -102,6 +112,13 @@ def blast(
         strokes = Strokes.joined([small, strokes])
     tick()
     return replace(strokes, texture=texture.name, seed=seed, device_dpi=device_dpi)
+
+
+def along_one_angle(sheet: Sheet) -> tuple[Cells, Cells]:
+    """The same for a field of which nothing is known: one angle everywhere, as of plain hatching."""
+    c, s = direction(2 * ANGLE)
+    whole = np.ones((sheet.rows, sheet.columns), np.float32)
+    return whole * np.float32(c), whole * np.float32(s)
 
 
 def field_at(sheet: Sheet, directions: Directions, edges: EdgeList | None) -> tuple[Cells, Cells]:

@@ -77,6 +77,11 @@ class Form:
     cos2, sin2: (rows, columns) of the sheet's cells, cosine and sine of twice the angle at which strokes run.
     """
 
+    #: Fine strokes are no shorter.
+    fine_shortest_pt = 20.5
+    #: Short strokes fill what is too light by this.
+    filler_seen = 0.15
+
     def __init__(self, sheet: Sheet, cos2: Cells, sin2: Cells, layers: tuple[HatchLayer, ...], borders: walls.Walls):
         self.sheet = sheet
         self.borders = borders

@@ -21,6 +21,7 @@ from penink_cli.blasting import candidates, curves, thin, walls
 from penink_cli.blasting.form import Form
 from penink_cli.blasting.shares import ALONE, shares
 from penink_cli.blasting.sheet import Cells, Sheet
+from penink_cli.blasting.stroke_set import StrokeSet
 from penink_cli.ground.device import MEAN
 from penink_cli.ground.model import EdgeList, Floats, HatchLayer, Strokes
 
@@ -50,9 +51,9 @@ FINE_LEAST, FINE_CAUTION = 0.4, 1.6
 FINE_SEEN = 0.015
 #: What a fine stroke must gain, and its least length.
 FINE_COST, FINE_SHORTEST_PT = 0.02, 20.5
-#: Along a field short strokes fill what is too light by this, and must gain so much; they count their own ink so many
+#: Along a field short strokes fill what is too light; they must gain so much, they count their own ink so many
 #: times and are no shorter than this.
-FILLER_SEEN, FILLER_COST, FILLER_CAUTION, FILLER_SHORTEST_PT = 0.15, 0.05, 1.3, 4.0
+FILLER_COST, FILLER_CAUTION, FILLER_SHORTEST_PT = 0.05, 1.3, 4.0
 #: Along the frame strokes are drawn where it is darker, and count their own ink so many times.
 RIM_TONE, RIM_CAUTION = 0.85, 4.0
 #: Rows of fine strokes that are tried, and the moves sideways, in rows, that look for the middle of a gap.
@@ -71,6 +72,7 @@ def hatch_sheet(
     tick: Callable[[], None],
     directions: tuple[Cells, Cells] | None = None,
     told: npt.NDArray[np.bool_] | None = None,
+    examples: Strokes | None = None,
 ) -> Strokes:
     """Strokes of all layers that give the sheet its tone, together with the ink that is there already.
 
@@ -78,11 +80,15 @@ def hatch_sheet(
     directions: cosine and sine of twice the angle (rows, columns) along which strokes run, each layer turned from it;
         None for the layers' own angles.
     told: for each cell, whether a telling line is drawn there: thin things are not drawn again.
+    examples: a set of strokes that are laid along the directions, in place of lines; the layers are its `passes`.
     """
     borders = walls.build(edges, sheet, max(pen_pt or layer.pen_pt for layer in layers))
     pens = [pen_pt or layer.pen_pt for layer in layers]
     finest = pens if pen_pt else [min(pen, max(FINE * pen, FINE_DOTS * gain_pt)) for pen in pens]
     form = None if directions is None else Form(sheet, *directions, layers, borders)
+    if examples is not None:
+        assert directions is not None
+        form = StrokeSet(sheet, *directions, examples, pen_pt, borders)
     along = thin.strokes_along(sheet, min(pens), min(pens) + MEAN * gain_pt, pen_pt is not None, told)
     draw_first(sheet, along)
     wide = sheet.low_pass(sheet.tone)
@@ -98,7 +104,7 @@ def hatch_sheet(
         if turn < SWEEPS:
             laid = []  # those of the round before are no longer needed
             smooth = ((sheet.low_pass(density) if turn else wide) / sheet.weight - there) / (1 - there)
-            covers = layer_shares(sheet, smooth, density, layers, form is not None)
+            covers = layer_shares(sheet, smooth, density, layers, form is not None and examples is None)
             for i, (layer, pen, hair) in enumerate(zip(layers, pens, finest)):
                 cover, own_seed = covers.pop(0), seed * 64 + i
                 if form:
@@ -199,7 +205,8 @@ def fine_strokes(
             )
         runs, moved = sheet.place(
             part.lines, part.widths, part.batches, walls=part.bounded, cost=FINE_COST, caution=FINE_CAUTION,
-            shifts=FINE_MOVES, spacing_pt=np.full(len(part.widths), FINE_ROW_PT), shortest_pt=FINE_SHORTEST_PT,
+            shifts=FINE_MOVES, spacing_pt=np.full(len(part.widths), FINE_ROW_PT),
+            shortest_pt=form.fine_shortest_pt if form else FINE_SHORTEST_PT,
         )  # fmt: skip
         out.append(part.drawn(runs, moved))
     return out
@@ -216,7 +223,7 @@ def fillers(sheet: Sheet, form: Form, pens: list[float], seed: int) -> list[Stro
         if layer.spacing_pt > 0:
             continue
         sheet.owe(sheet.tone)
-        seen = sheet.spread(sheet.error()) - np.float32(FILLER_SEEN)
+        seen = sheet.spread(sheet.error()) - np.float32(form.filler_seen)
         part = form.fillers(i, pen, seen, seed * 64 + i)
         runs, moved = sheet.place(
             part.lines, part.widths, part.batches, walls=part.bounded, cost=FILLER_COST, caution=FILLER_CAUTION,

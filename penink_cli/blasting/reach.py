@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from penink_cli.blasting import tile
+from penink_cli.blasting import stroke_set, tile
 from penink_cli.ground.model import Texture
 
 
 def reachable(texture: Texture, gain_pt: float) -> tuple[float, float]:
     """The lightest and the darkest tone: one stroke a tile, and all of them.
 
-    Hatching in layers ends where its last layer does, and is never darker than the closest lines it may draw.
+    A set of strokes ends where its last pass does, hatching in layers where its last layer does, and
+    is never darker than the closest lines it may draw.
     """
+    if texture.oriented:
+        return 0.0, stroke_set.PASSES[-1][1]
     if texture.layers:
         return 0.0, max(layer.high for layer in texture.layers)
     enters = tile.thresholds(texture, gain_pt)

@@ -45,6 +45,7 @@ from penink_cli.blasting.constants import (
 from penink_cli.blasting.tile import thresholds
 from penink_cli.ground import exact
 from penink_cli.ground.angles import direction
+from penink_cli.ground.errors import ParameterError
 from penink_cli.ground.model import Floats, HatchLayer, Ints, Texture
 
 Bytes = npt.NDArray[np.uint8]
@@ -277,6 +278,8 @@ def _short(segment: Floats) -> list[Floats]:
 
 def table(texture: Texture, pen_pt: float | None = None) -> ThresholdTable:
     """The threshold table of any texture; pen_pt: one pen for all its strokes."""
+    if texture.oriented:
+        raise ParameterError(f"the texture {texture.name} is a set of strokes, which only blast and render can lay")
     pen = pen_pt or (float(np.median(texture.strokes.widths)) if len(texture.strokes) else 0.4)
     if not texture.layers:
         own = float(np.median(texture.strokes.widths)) + WIDENED

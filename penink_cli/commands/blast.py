@@ -150,7 +150,7 @@ def blast(
     for line in warnings(tone, texture, pen, device_dpi):
         warn(line)
     if directions and not follows(texture, rule):
-        why = 'by the rule "best" a texture with hatching layers is, save engravings that are straight'
+        why = 'by the rule "best" one with hatching layers or a set is, save straight engravings'
         warn(f"{texture.name} is not drawn along directions: {why}")
     with progress(TICKS, "blasting", quiet) as more:
         strokes = blast_tone(
@@ -178,6 +178,8 @@ def blast(
 
 def follows(texture: Texture, rule: str) -> bool:
     """Whether strokes of a texture run along a field of directions where there is one."""
+    if texture.oriented:
+        return True
     if rule == "engrave" or (rule == "best" and texture.engraving):
         return texture.engraving is None or texture.engraving.along
     return rule == "best" and bool(texture.layers)

@@ -47,10 +47,11 @@ def describe(found: Texture, device_dpi: float | None) -> str:
     strokes = found.strokes
     pens = sorted({f"{w:g}" for w in strokes.widths.tolist()}, key=float)
     low, high = reachable(found, 72.0 / device_dpi if device_dpi else 0.0)
+    kind = ", drawn whole or not at all" * found.whole + ", a set, laid along directions" * found.oriented
     lines = [
         f"name      {found.name}",
         f"tile      {strokes.width:g} × {strokes.height:g} pt",
-        f"strokes   {len(strokes)}{', drawn whole or not at all' if found.whole else ''}",
+        f"strokes   {len(strokes)}{kind}",
         f"pen       {', '.join(pens[:6])}{', …' if len(pens) > 6 else ''} pt",
         f"tone      {low:.3f} to {high:.3f}"
         + (f" at {device_dpi:g} dpi" if device_dpi else " without a device's gain"),
@@ -147,14 +148,20 @@ def make(
 @click.option("--name", help="The texture's name.  [default: the file's]")
 @click.option("--pen", type=LENGTH, help="Width of all strokes.  [default: each path's stroke-width]")
 @click.option("--whole", is_flag=True, help="Strokes are drawn whole or not at all.")
+@click.option("--oriented", is_flag=True, help="A set of examples, each path from left to right along the form.")
 @output_options
 def import_svg(
-    file: str | None, name: str | None, pen: float | None, whole: bool, output: str | None, **_: Any
+    file: str | None, name: str | None, pen: float | None, whole: bool, oriented: bool, output: str | None, **_: Any
 ) -> None:
     """Make a texture of an SVG drawing.
 
     Its paths, lines and shapes become strokes, in their order, which is the priority: what is drawn first comes
     first. The drawing's size is the tile's. Text and images are left out: turn text to paths first.
+
+    With --oriented they are examples, of the size they are drawn in, that `blast --directions` bends along the form.
+
+    \b
+    penink texture import --oriented hair.svg -o hair.texture.json
     """
     from penink_cli.formats import svg_texture
 
@@ -162,8 +169,14 @@ def import_svg(
     with reading(file) as stream:
         title = name or (source.rsplit("/", 1)[-1].removesuffix(".svg") if file and file != "-" else "imported")
         drawing = svg_texture.read(stream, source, title, pen, whole, lambda line: warn(f"{source}: {line}"))
+    if oriented:
+        from penink_cli.textures.sets import as_set
+
+        drawing, left_out = as_set(drawing)
+        if left_out and len(drawing.strokes):
+            warn(f"{source}: {left_out} of the paths left out, which lead nowhere from left to right")
     if not len(drawing.strokes):
-        raise ParameterError("no stroke in the drawing").from_source(source)
+        raise ParameterError(f"no stroke {'from left to right ' * oriented}in the drawing").from_source(source)
     from penink_cli.formats import texture as texture_format
 
     with writing(output, binary=False) as out:

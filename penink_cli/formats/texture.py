@@ -6,7 +6,8 @@ One JSON text::
      "strokes": [{"priority": 0, "width": 0.4, "points": [[0, 8], [12, 8], [24, 9], [36, 9]]}]}
 
 Strokes of lower priority are drawn first. ``"whole": true`` says that strokes are never shortened;
-``"layers"`` says that the tile is an instance of plain hatching, which can then be laid without a tile.
+``"layers"`` says that the tile is an instance of plain hatching, which can then be laid without a tile;
+``"oriented": true`` that it is no tile but a set of examples, which are bent along a field of directions.
 See README.md beside this file and schemas/texture.schema.json.
 """
 
@@ -24,6 +25,8 @@ from penink_cli.ground.errors import FormatError
 from penink_cli.ground.model import Engraving, Floats, HatchLayer, Ints, Strokes, Texture
 
 MAX_BYTES = 64 << 20
+MAX_EXAMPLES = 1000  # of a set of oriented strokes
+LEAST_EXAMPLE, MOST_EXAMPLE = 1.0, 250.0  # how far they lead along x, points
 
 # Name in the file -> name in HatchLayer, least and most value.
 _LAYER = {
@@ -66,6 +69,9 @@ def _texture(document: dict[str, Any]) -> Texture:
     whole = document.get("whole", False)
     if type(whole) is not bool:
         raise FormatError(f"whole is {strict_json.quoted(whole)}; true or false is needed")
+    oriented = document.get("oriented", False)
+    if type(oriented) is not bool:
+        raise FormatError(f"oriented is {strict_json.quoted(oriented)}; true or false is needed")
     items = strict_json.array(strict_json.member(document, "strokes"), "strokes")
     if not items:
         raise FormatError("strokes is empty; a texture has at least one")
@@ -77,10 +83,23 @@ def _texture(document: dict[str, Any]) -> Texture:
     points = points[np.repeat(begin[order] - first[:-1], sizes[order]) + np.arange(len(points))]
     strokes = Strokes(width, height, points, first, widths[order], texture=name)
     layers = strict_json.array(document.get("layers", []), "layers")
-    return Texture(
-        name, strokes, priorities[order], whole, tuple(_layer(layer, i) for i, layer in enumerate(layers)),
-        _engraving(document.get("engraving")),
-    )  # fmt: skip
+    found = tuple(_layer(layer, i) for i, layer in enumerate(layers))
+    if oriented:
+        _check_set(strokes, found)
+    return Texture(name, strokes, priorities[order], whole, found, _engraving(document.get("engraving")), oriented)
+
+
+def _check_set(strokes: Strokes, layers: tuple[HatchLayer, ...]) -> None:
+    """Raise FormatError for a set of oriented strokes that cannot be laid along a field."""
+    if layers:
+        raise FormatError("oriented and with layers; a set of strokes has none")
+    if len(strokes) > MAX_EXAMPLES:
+        raise FormatError(f"{len(strokes)} oriented strokes; {MAX_EXAMPLES} are allowed")
+    for i in range(len(strokes)):
+        x = strokes[i][:, 0]
+        if not LEAST_EXAMPLE <= x[-1] - x[0] <= MOST_EXAMPLE:
+            on = f"{x[-1] - x[0]:g} pt on; from {LEAST_EXAMPLE:g} to {MOST_EXAMPLE:g} along x are needed"
+            raise FormatError(f"oriented stroke {i}, by priority, leads {on}")
 
 
 def _strokes(items: list[Any]) -> tuple[Floats, Floats, Ints, Floats]:
@@ -195,6 +214,8 @@ def write(out: Sink, texture: Texture) -> None:
     head += f', "width": {_fixed(s.width, 3)}, "height": {_fixed(s.height, 3)}'
     if texture.whole:
         head += ', "whole": true'
+    if texture.oriented:
+        head += ', "oriented": true'
     if texture.layers:
 
         def members(layer: HatchLayer) -> list[tuple[str, float]]:

@@ -376,6 +376,7 @@ class Texture:
     whole: strokes are drawn whole or not at all (stipple dots, mortar), never trimmed to a run.
     layers: what the tile is an instance of where that is plain hatching, in the order of drawing.
     engraving: the lines that swell for which the tile stands where only strokes of one width can be drawn.
+    oriented: no tile but a set of examples, each with its first point on a line of the field and +x along that.
     """
 
     name: str
@@ -384,6 +385,7 @@ class Texture:
     whole: bool = False
     layers: tuple[HatchLayer, ...] = ()
     engraving: Engraving | None = None
+    oriented: bool = False
 
 
 @dataclass(frozen=True)

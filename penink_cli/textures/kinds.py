@@ -2,6 +2,7 @@
 
 #: Name -> what it is like.
 KINDS = {
+    "barb": "short hooks along the form, as of feathers",
     "brick": "a wall, its joints first, then the bricks one by one",
     "contour-rings": "an engraving's lines that swell, in rings about a point",
     "crosshatch": "lines in one direction, and others across them where it is dark",
@@ -9,10 +10,15 @@ KINDS = {
     "engraving": "lines evenly far apart whose width is the tone, along the form (see blast --directions)",
     "engraving-straight": "the same, straight",
     "form": "lines along the form (see blast --directions), others at a slant over them, black where it is darkest",
+    "fur": "short hairs along the form",
     "grain": "wandering lines side by side, like the grain of wood",
     "grass": "blades that grow upwards and bend",
+    "grass-blades": "blades along the form, of which a lawn is drawn where it stands",
+    "hair": "long hairs along the form",
     "parallel": "lines in one direction, denser as it gets darker",
     "scribble": "loops of a restless pen",
     "stipple": "dots",
     "wood": "an engraving's lines that waver, as those cut in wood",
 }
+#: Those that are no tile but a set of examples, laid along a field of directions.
+SETS = ("barb", "fur", "grass-blades", "hair")

@@ -19,6 +19,8 @@ from penink_cli.ground.device import DOT, MEAN
 from penink_cli.ground.errors import ParameterError
 from penink_cli.ground.model import Engraving, Floats, HatchLayer, Strokes, Texture
 from penink_cli.textures.even import Torus
+from penink_cli.textures.kinds import SETS
+from penink_cli.textures.sets import make_set
 
 TILE_PT = 144.0
 #: What a full tile covers, at the least.
@@ -332,7 +334,10 @@ def make(
     of one layer are nowhere closer, points; 0 for no limit. layers: 1 … 4 directions of hatching.
     Of engravings only: spacing is the lines' distance, finest the least width of a line, points; lines: so many to the
     sheet's width; centre: of rings, parts of the sheet. Raises ParameterError where these do not fit the kind.
+    A set of strokes has its pen alone.
     """
+    if kind in SETS:
+        return make_set(kind, pen)
     maker, usual_angle, usual_pen, usual_layers = MAKERS[kind]
     made = maker(usual_angle if angle is None else angle, pen or usual_pen, spacing, layers or usual_layers, seed)
     if made.engraving is None:

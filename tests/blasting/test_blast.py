@@ -218,7 +218,7 @@ def test_all_ink_lies_within_the_frame():
 
 @pytest.mark.parametrize("level", [0.0, 1e-6, 0.5, 1.0])
 @pytest.mark.parametrize("size", [(0.3, 0.2), (1, 200), (200, 1), (7, 7), (60, 60)])
-@pytest.mark.parametrize("texture", ["crosshatch", "stipple", "grass"])
+@pytest.mark.parametrize("texture", ["crosshatch", "stipple", "grass", "fur"])
 def test_any_sheet_and_any_tone(texture, size, level):
     for shape in ((1, 1), (1, 40), (40, 1), (33, 17)):
         strokes = blast(np.full(shape, level), *size, None, find_texture(texture))

@@ -14,7 +14,7 @@ from penink_cli.blasting.tile import thresholds
 from penink_cli.formats import svg_texture, texture
 from penink_cli.ground.errors import FormatError, ParameterError
 from penink_cli.options.textures import find_texture, shipped
-from penink_cli.textures.kinds import KINDS
+from penink_cli.textures.kinds import KINDS, SETS
 from penink_cli.textures.make import MAKERS, make
 
 GOOD = {
@@ -36,10 +36,10 @@ def written(found) -> bytes:
 
 
 def test_every_kind_is_shipped():
-    assert sorted(KINDS) == sorted(MAKERS) == shipped()
+    assert sorted(KINDS) == sorted([*MAKERS, *SETS]) == shipped()
 
 
-@pytest.mark.parametrize("name", sorted(KINDS))
+@pytest.mark.parametrize("name", sorted(set(KINDS) - set(SETS)))
 def test_a_shipped_texture_reaches_black_and_fills_up_steadily(name):
     found = find_texture(name)
     assert reachable(found, 72 / 600)[1] >= 0.975
@@ -47,7 +47,7 @@ def test_a_shipped_texture_reaches_black_and_fills_up_steadily(name):
     assert enters[0] == 0 and (np.diff(enters) >= 0).all() and enters[-1] > 0.95
 
 
-@pytest.mark.parametrize("name", sorted(set(KINDS) - {"brick"}))
+@pytest.mark.parametrize("name", sorted(set(KINDS) - {"brick", *SETS}))
 @pytest.mark.parametrize("part", [0.1, 0.4])
 def test_every_prefix_is_evenly_spread(name, part):
     """The ink of a prefix in 9 parts of the tile differs less than that of strokes thrown at random."""
@@ -58,7 +58,7 @@ def test_every_prefix_is_evenly_spread(name, part):
     assert lot.std() < 0.75 * np.sqrt(n / 9)
 
 
-@pytest.mark.parametrize("name", ["stipple", "brick"])
+@pytest.mark.parametrize("name", ["stipple", "brick", *SETS])
 def test_a_shipped_texture_is_what_make_makes(name):
     assert written(make(name)) == written(find_texture(name))
 
@@ -99,6 +99,8 @@ def test_strokes_are_sorted_by_priority():
         ({"width": 0}, "width is 0"),
         ({"height": True}, "height is true"),
         ({"whole": 1}, "whole is 1"),
+        ({"oriented": 1, "layers": []}, "oriented is 1"),
+        ({"oriented": True}, "oriented and with layers"),
         ({"strokes": []}, "at least one"),
         ({"strokes": [3]}, "stroke 0 is 3"),
         ({"strokes": [{"width": 1, "points": [[0, 0]]}]}, 'stroke 0: member "priority" is missing'),
@@ -116,6 +118,42 @@ def test_a_wrong_texture_is_refused_and_the_place_named(change, complaint):
     with pytest.raises(FormatError, match=r"t\.json") as error:
         read({**GOOD, **change})
     assert complaint in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("points", "count", "complaint"),
+    [
+        ([[3, 3]], 1, "oriented stroke 0, by priority, leads 0 pt on; from 1 to 250"),
+        ([[9, 0], [6, 0], [3, 0], [0, 0]], 1, "leads -9 pt on"),
+        ([[0, 0], [99, 0], [200, 0], [251, 0]], 1, "leads 251 pt on"),
+        ([[0, 0], [1, 0], [2, 0], [3, 0]], 1001, "1001 oriented strokes; 1000 are allowed"),
+    ],
+)
+def test_a_wrong_set_is_refused(points, count, complaint):
+    strokes = [{"priority": 0, "width": 0.4, "points": points}] * count
+    with pytest.raises(FormatError, match=complaint):
+        read({**GOOD, "layers": [], "oriented": True, "strokes": strokes})
+
+
+def test_a_set_is_written_and_read_as_such():
+    found = find_texture("fur")
+    assert found.oriented and read(written(found)).oriented and reachable(found, 72 / 600) == (0, 0.99)
+    schema = json.loads((resources.files("penink_cli.formats") / "schemas" / "texture.schema.json").read_text("utf-8"))
+    jsonschema.validate(json.loads(written(found)), schema)
+
+
+def test_paths_of_a_drawing_become_examples_from_left_to_right(penink):
+    done = penink("texture", "import", "--oriented", "--name", "hair", input=SVG)
+    found = read(done.stdout)
+    assert done.returncode == 0 and found.oriented and len(found.strokes) == 3  # and the circle, which comes round
+    assert done.stderr.count(b"\n") == 1 and b"1 of the paths left out, which lead nowhere" in done.stderr
+    turned = SVG.replace(b'x1="0" y1="6" x2="12"', b'x1="12" y1="6" x2="0"')
+    back = penink("texture", "import", "--oriented", input=turned)
+    assert back.stdout == penink("texture", "import", "--oriented", input=SVG).stdout
+    upright = b'<svg xmlns="http://www.w3.org/2000/svg" width="9" height="9"><path d="M1 1V9"/></svg>'
+    done = penink("texture", "import", "--oriented", input=upright)
+    assert done.returncode == 1 and not done.stdout and done.stderr.count(b"\n") == 1
+    assert b"no stroke from left to right in the drawing" in done.stderr
 
 
 def test_an_unknown_texture_is_refused_with_the_known_ones():
@@ -175,7 +213,7 @@ def test_a_plotter_s_reach_and_a_name_of_one_s_own(penink):
 
 
 def test_the_command_lists_shows_makes_and_imports(penink):
-    assert penink("texture", "list").stdout.decode().split("\n")[0].startswith("brick")
+    assert penink("texture", "list").stdout.decode().split("\n")[0].startswith("barb")
     shown = penink("texture", "show", "crosshatch")
     assert shown.returncode == 0 and "0.990" in shown.stdout.decode()
     assert texture.read(io.BytesIO(penink("texture", "show", "--json", "grass").stdout), "x").name == "grass"
