@@ -176,7 +176,7 @@ def _step_beside(points: EdgePoints, step: Floats, here: Floats, there: Floats, 
     """The step of the edge point next to `here` among those on the edge from here to there; 0 where there are none."""
     height, width = points.shape
     along = there - here
-    length = max(float(np.hypot(*along)), 1e-9)
+    length = max(float(exact.length(along)), 1e-9)
     reach = min(length, _REACH)
     centre = here + along * (0.5 * reach / length)
     left, top = (int(v) for v in np.maximum(np.floor(centre - 0.5 * reach - beside), 0))

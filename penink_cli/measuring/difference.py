@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
+from penink_cli.ground import exact
 from penink_cli.ground.model import Floats, GreyImage, Strokes
 from penink_cli.measuring import tone
 from penink_cli.measuring.lines import places
@@ -52,7 +53,7 @@ def _from_segment(points: Floats, begin: Floats, end: Floats) -> Floats:
     way = end - begin
     square = np.maximum(way[:, 0] ** 2 + way[:, 1] ** 2, 1e-30)
     part = np.clip(((points - begin) * way).sum(axis=1) / square, 0, 1)
-    distance: Floats = np.hypot(*(points - begin - part[:, None] * way).T)
+    distance: Floats = exact.length(points - begin - part[:, None] * way)
     return distance
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from penink_cli.blasting import curves
+from penink_cli.ground import exact
 from penink_cli.ground.model import Floats, Ints, Strokes
 from penink_cli.travel.order import drawn_length, travel_length
 
@@ -39,17 +40,17 @@ class LineFigures:
 def figures(layers: Sequence[Strokes]) -> LineFigures:
     """Of all layers, drawn one after the other."""
     count = sum(map(len, layers))
-    length = math.fsum(drawn_length(layer) for layer in layers if len(layer))
-    lifts = sum(int(_gaps(layer).sum()) for layer in layers) + max(0, sum(1 for layer in layers if len(layer)) - 1)
+    drawn = [layer for layer in layers if len(layer)]
+    length = math.fsum(drawn_length(layer) for layer in drawn)
+    lifts = sum(map(_lifts, drawn)) + max(0, len(drawn) - 1)  # whole numbers
     travel = math.fsum(travel_length(layer) for layer in layers if len(layer) > 1)
     return LineFigures(evenness(Strokes.joined(layers)), count, length, length / max(1, count), lifts, travel)
 
 
-def _gaps(strokes: Strokes) -> np.ndarray:
-    """Whether the pen is lifted before each stroke but the first."""
+def _lifts(strokes: Strokes) -> int:
+    """How often the pen is lifted between strokes."""
     ends, starts = strokes.points[strokes.first[1:-1] - 1], strokes.points[strokes.first[1:-1]]
-    away: np.ndarray = np.hypot(*(starts - ends).T) > LIFT_PT
-    return away
+    return int(np.count_nonzero(exact.length(starts - ends) > LIFT_PT))
 
 
 def places(strokes: Strokes, step: float) -> tuple[Floats, Ints, curves.Polylines]:
@@ -72,7 +73,7 @@ def evenness(strokes: Strokes) -> float | None:
     forward = np.where(owner[after] == owner, after, np.arange(len(points)))
     backward = np.where(owner[before] == owner, before, np.arange(len(points)))
     way = points[forward] - points[backward]
-    size = np.hypot(*way.T)
+    size = exact.length(way)
     usable = size > 0
     way[usable] /= size[usable, None]
     tree = cKDTree(points)
