@@ -63,7 +63,7 @@ quick: $(INSTALLED)
 lint: $(INSTALLED)
 	$(BIN)/ruff check .
 	$(BIN)/mypy
-	$(BIN)/cython-lint penink_cli
+	PATH="$(BIN):$$PATH" $(BIN)/cython-lint penink_cli
 
 # Fuzz every reader for SECONDS in all; what is found stays in tests/data/found, and `make test` runs it.
 SECONDS ?= 600
