@@ -56,6 +56,10 @@ def _watch(event: str, arguments: tuple[object, ...]) -> None:
         pytest.fail(f"{test} starts {name}: put it among RENDERED in tests/conftest.py")
 
 
+# A make that a test starts is not a part of the one that started the tests.
+for _name in ("MAKEFLAGS", "MAKELEVEL", "MFLAGS", "MAKEOVERRIDES"):
+    os.environ.pop(_name, None)
+
 _quick: set[str] = set()  # tests of the quick tier that are not marked `rendered`
 sys.addaudithook(_watch)
 

@@ -81,6 +81,9 @@ def test_every_block_runs_as_pasted_in_order(tmp_path):
     Image.fromarray(grey.clip(0, 255).astype(np.uint8)).save(folder / "photo.png")
     Image.open(folder / "photo.png").resize((96, 64)).save(folder / "holiday/portrait.png")
     Image.open(folder / "photo.png").resize((96, 64)).save(folder / "holiday/beach.jpg")
+    lock = "".join(f'<path d="M2 {y}c8 -2 16 2 24 {y % 3}" stroke="#000" fill="none"/>' for y in range(4, 40, 4))
+    svg = f'<svg xmlns="http://www.w3.org/2000/svg" width="30" height="44">{lock}</svg>'
+    (folder / "hair.svg").write_text(svg)
     env = environment(PATH=f"{programs}:{os.environ['PATH']}", HOME=str(tmp_path), MAKEFLAGS="")
     ran = 0
     for block in blocks():

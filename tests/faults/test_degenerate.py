@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from penink_cli.formats import edge_list, pgm
-from penink_cli.ground.model import EdgeList, GreyImage
+from penink_cli.formats import directions, edge_list, pgm
+from penink_cli.ground.model import Directions, EdgeList, GreyImage
 from tests.faults.calls import CALLS, encoded, strokes_text
 from tests.faults.test_outputs import one_line
 
@@ -107,6 +107,9 @@ def words(name: str, folder: Path) -> list[str]:
 def test_images(name, kind, server, inputs, tmp_path):
     given = image(kind)
     height, width = given.values.shape
+    field = Directions(np.ones((height, width)), np.zeros((height, width)), np.full((height, width), 0.5))
+    (tmp_path / "photo.directions.pgm").write_bytes(encoded(directions.write, field))
+    (tmp_path / "photo.strokes.jsonl").write_bytes(strokes_text(width, height, (1, [[width / 2, height / 2]])))
     for edges in EDGES.values():
         (tmp_path / "photo.edges.json").write_bytes(encoded(edge_list.write, edges(width, height)))
         done = server.run(name, *words(name, tmp_path), stdin=encoded(pgm.write, given))
