@@ -6,6 +6,7 @@ import click
 
 from penink_cli.ground.streams import writing
 from penink_cli.options.common import (
+    LENGTH,
     SIZE,
     Finite,
     edges_option,
@@ -36,7 +37,12 @@ from penink_cli.options.inputs import (
     "--max-error",
     type=Finite(above=0, most=255),
     metavar="E",
-    help="RMS difference from the photo, grey levels of 255.  [default: 8]",
+    help="RMS difference from the photo, grey levels of 255.  [default: 8, with --seen-at 3.5]",
+)
+@click.option(
+    "--seen-at",
+    type=LENGTH,
+    help="Count what a drawing of this width can show: the difference blurred by a point on paper.",
 )
 @click.option(
     "--fit",
@@ -65,6 +71,7 @@ def reduce(
     size: tuple[int, int] | None,
     auto: bool,
     max_error: float | None,
+    seen_at: float | None,
     fit: str,
     photo_file: str | None,
     maxval: int | None,
@@ -87,8 +94,8 @@ def reduce(
 
     if (factor is not None) + (size is not None) + auto != 1:
         raise click.UsageError("one of --factor, --size and --auto is needed")
-    if max_error is not None and not auto:
-        raise click.UsageError("--max-error goes with --auto")
+    if (max_error is not None or seen_at is not None) and not auto:
+        raise click.UsageError(f"{'--seen-at' if max_error is None else '--max-error'} goes with --auto")
     only_one_standard_input(file, edges_file, photo_file or "")
     edges = read_edges(edges_file, max_pixels)
     samples = read_grey(file, photo_limit(max_pixels))
@@ -110,8 +117,10 @@ def reduce(
         )
     say = reporter(verbose)
     if size is None:
-        limit = grid.MAX_ERROR if max_error is None else max_error / 255
-        chosen = grid.choose_grid(samples.grey, edges, limit, photo=photo, fit=fit, threads=threads, report=say)
+        limit = None if max_error is None else max_error / 255
+        chosen = grid.choose_grid(
+            samples.grey, edges, limit, seen_at=seen_at, photo=photo, fit=fit, threads=threads, report=say
+        )
         reduced = chosen.samples
         say(f"chosen: {reduced.shape[1]} x {reduced.shape[0]}, error {255 * chosen.error:.2f} of 255")
     else:

@@ -1,7 +1,9 @@
 """The smallest grid that still serves: the paper's open question of the appropriate reduction factor.
 
 A grid serves if its samples, reconstructed and seen through the camera, differ from the photo by no
-more than a given error, and if every region that edges enclose holds a sample. The error falls as
+more than a given error, and if every region that edges enclose holds a sample. Where it is known how wide the drawing
+will be, only that part of the difference counts which a drawing of that width can show: what is left of it when it is
+blurred by a point on paper. The error falls as
 the grid grows, which halving the interval exploits; regions do not behave so, and are tried in turn.
 
 Of a large photo a smaller view is searched: to try one grid at 12 megapixels takes 20 s of processor, and a view of
@@ -33,6 +35,8 @@ from penink_cli.reconstruction.shrinking import shrunk
 Grey32 = npt.NDArray[np.float32]
 
 MAX_ERROR = 8 / 255
+MAX_SEEN_ERROR = 3.5 / 255  # of what a drawing at a size shows
+SEEN_PT = 1.0  # σ of the blur: hatching shows nothing finer
 # Smaller regions are specks that no stroke can show: 4 x 4 pixels of 512 x 512, however finely the photo is resolved.
 LEAST_REGION, LEAST_REGION_PX = 1 / 16384, 16  # of the picture, and at least so many pixels
 _VIEW_PX = 1_000_000
@@ -44,18 +48,23 @@ _FINER = 1.03  # how much finer the grid is at the next try, where the photo its
 
 @dataclass(frozen=True, eq=False)
 class _View:
-    """What grids are judged by: a picture (h, w), its blur in pixels, how many points along an axis make a pixel."""
+    """What grids are judged by.
+
+    picture: (h, w). blur: its own, pixels. fine: how many points along an axis make a pixel.
+    seen: pixels by which differences are blurred before they count.
+    """
 
     picture: Grey32
     blur: float
     fine: int
+    seen: float = 0.0
 
     def smaller(self, most: int) -> _View:
         """The same of at most so many pixels, more or less, each the mean of those that it covers."""
         shrink = math.sqrt(self.picture.size / most)
         if shrink <= 1:
             return self
-        return _View(shrunk(self.picture, shrink), self.blur / shrink, AREA)
+        return _View(shrunk(self.picture, shrink), self.blur / shrink, AREA, self.seen / shrink)
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,8 +79,9 @@ class Grid:
 def choose_grid(
     samples: Grey32,
     edges: EdgeList,
-    max_error: float = MAX_ERROR,
+    max_error: float | None = None,
     *,
+    seen_at: float | None = None,
     photo: Grey32 | None = None,
     fit: str = "lsq",
     threads: int | None = None,
@@ -82,7 +92,8 @@ def choose_grid(
     Args:
         samples: (h, w) clean samples, 0 … 1.
         edges: in the frame of the image.
-        max_error: RMS, grey 0 … 1.
+        max_error: RMS, grey 0 … 1; MAX_ERROR unless given, with seen_at MAX_SEEN_ERROR.
+        seen_at: the width on paper, points, whose drawing is to show no more than that; None for every pixel.
         photo: what to compare with (and to fit to); the samples where None.
         fit: as of `reduce`.
         threads: the bytes are the same for any number.
@@ -94,7 +105,12 @@ def choose_grid(
     """
     height, width = samples.shape
     seen = samples if photo is None else photo
-    exact = _View(seen, 0.0, POINT) if photo is None else _View(seen, camera_blur(seen, edges), AREA)
+    if max_error is None:
+        max_error = MAX_ERROR if seen_at is None else MAX_SEEN_ERROR
+    shown = 0.0 if seen_at is None else SEEN_PT * seen.shape[1] / seen_at
+    exact = _View(seen, 0.0, POINT, shown)
+    if photo is not None:
+        exact = _View(seen, camera_blur(seen, edges), AREA, shown)
     quick = exact.smaller(_VIEW_PX)
     regions = _Regions(edges, *seen.shape)
     long = max(width, height)
@@ -112,7 +128,7 @@ def choose_grid(
         if key not in tried:
             fit_to = photo if view is exact else view.picture
             reduced = reduce(samples, edges, *size(side), photo=fit_to, fit=fit, blur=view.blur, threads=threads)
-            error = remaining_error(reduced, edges, view.picture, view.blur, view.fine, threads)
+            error = remaining_error(reduced, edges, view.picture, view.blur, view.fine, threads, view.seen)
             tried[key] = Grid(reduced, error, regions.without_sample(*size(side)))
             report(
                 f"{reduced.shape[1]} x {reduced.shape[0]}: error {255 * error:.2f} of 255, "
@@ -147,13 +163,17 @@ def choose_grid(
 
 
 def remaining_error(
-    samples: Grey32, edges: EdgeList, photo: Grey32, blur: float, fine: int = AREA, threads: int | None = None
-) -> float:
-    """RMS difference (0 … 1) between a photo and the reconstruction of samples, seen through the camera."""
+    samples: Grey32, edges: EdgeList, photo: Grey32, blur: float, fine: int = AREA, threads: int | None = None,
+    seen: float = 0.0,
+) -> float:  # fmt: skip
+    """RMS difference (0 … 1) between a photo and the reconstruction of samples, seen through the camera.
+
+    seen: σ, pixels of the photo, by which the difference is blurred first.
+    """
     from scipy.ndimage import gaussian_filter
 
     height, width = photo.shape
-    halo = int(4 * blur + 1)
+    halo = int(4 * (blur + seen) + 1)
     rows = max(64, 4_000_000 // width)
     total = 0.0
     for top in range(0, height, rows):
@@ -163,8 +183,11 @@ def remaining_error(
         grey = np.clip(grey, 0, 1, out=grey).reshape(last - first, fine, width, fine).mean(axis=(1, 3))
         if blur:
             grey = gaussian_filter(grey, blur, mode="nearest")
+        grey -= photo[first:last]
+        if seen:
+            grey = gaussian_filter(grey, seen, mode="nearest")
         bottom = min(height, top + rows)
-        total += float(np.square(grey[top - first : bottom - first] - photo[top:bottom]).sum())
+        total += float(np.square(grey[top - first : bottom - first]).sum())
     return float(np.sqrt(total / photo.size))
 
 

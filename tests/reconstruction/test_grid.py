@@ -2,10 +2,11 @@
 
 import numpy as np
 import pytest
+from scipy import ndimage
 
 from penink_cli.ground.errors import ParameterError
 from penink_cli.ground.model import EdgeList
-from penink_cli.reconstruction import grid, shrinking
+from penink_cli.reconstruction import enlarge, grid, shrinking
 from penink_cli.reconstruction.grid import choose_grid
 
 
@@ -117,3 +118,20 @@ def test_a_grid_may_be_finer_than_the_view_it_is_judged_by(monkeypatch):
         choose_grid(noise, edges, 0.5 / 255, photo=np.roll(noise, 7, axis=1))
     chosen = choose_grid(noise, edges, 0.2, photo=noise)
     assert chosen.samples.shape[1] > 30 and chosen.error <= 0.2
+
+
+def test_a_small_drawing_needs_fewer_samples_and_shows_no_more_than_is_allowed():
+    """Fine texture costs samples only where the drawing is large enough to show it."""
+    y, x = np.mgrid[0:160, 0:160]
+    woven = (0.5 + 0.2 * np.sin(x / 25) + 0.08 * np.sin(x * 1.3) * np.sin(y * 1.3)).astype(np.float32)
+    edges = EdgeList(160, 160)
+    sides = []
+    for inches in (0.5, 2, 20):
+        chosen = choose_grid(woven, edges, seen_at=72.0 * inches)
+        assert chosen.error <= grid.MAX_SEEN_ERROR
+        sides.append(chosen.samples.shape[0])
+        sigma = 160 / (72 * inches)
+        large = enlarge.reconstruct(chosen.samples.astype(float), edges, 160, 160)
+        shown = ndimage.gaussian_filter(large - woven, sigma, mode="nearest")
+        assert np.sqrt(np.mean(shown**2)) == pytest.approx(chosen.error, abs=2e-4)
+    assert sides[0] == sides[1] < sides[2] / 2
