@@ -316,6 +316,14 @@ class _Drawing:
         layer: dict[str, Any] = {"samples": reduced, "edges": edges, "texture": blast.get("texture", "crosshatch")}
         if directions:
             layer["directions"] = directions
+        if lines:
+            told = self.stages["lines"]
+            layer["lines"] = lines
+            layer["line"] = {
+                name.replace("-", "_"): _number(name, told[name])
+                for name in ("pen", "even", "density", "per-inch2", "min-rank")
+                if name in told
+            }
         for name in ("pen", "gamma", "seed", "rule"):
             if name in blast:
                 layer[name] = _number(name, blast[name])
@@ -344,4 +352,4 @@ def _number(name: str, value: Value) -> Value:
     """The value of an option as a manifest has it: lengths in points."""
     if name == "rule" or not isinstance(value, str):
         return value
-    return parse_length(value) if name == "pen" else float(value) if name == "gamma" else int(value)
+    return parse_length(value) if name == "pen" else int(value) if name == "seed" else float(value)

@@ -180,6 +180,20 @@ def test_the_ending_tells_what_is_drawn(penink, photo, tmp_path):
     assert done.returncode == 2 and b"known endings" in done.stderr
 
 
+def test_an_archive_keeps_the_lines_and_the_field_of_its_style(penink, photo, tmp_path):
+    ran(penink("draw", photo, "--style", "engraving", "--width", "2in", "-o", tmp_path / "d.penink"))
+    with zipfile.ZipFile(tmp_path / "d.penink") as archive:
+        (layer,) = json.loads(archive.read("illustration.json"))["layers"]
+    assert layer["texture"] == "engraving" and "directions" in layer and "lines" in layer
+    assert layer["line"] == {"pen": 0.75, "per_inch2": 3.5}
+    # and is drawn as the drawing is, of its own size
+    ran(penink("draw", photo, "--style", "engraving", "--width", "2in", "-o", tmp_path / "d.jsonl"))
+    direct = strokes((tmp_path / "d.jsonl").read_bytes())[1:]
+    rendered = strokes(ran(penink("render", tmp_path / "d.penink")))[1:]
+    ink = [sum(len(s["points"]) * s["width"] for s in found) for found in (direct, rendered)]
+    assert ink[1] == pytest.approx(ink[0], rel=0.1)
+
+
 def test_a_picture_for_a_screen_has_the_photo_s_tone_as_it_is(penink, photo, tmp_path):
     wanted = np.asarray(Image.open(photo).convert("L"), dtype=float).mean()
     true = ("--style", "true", "--width", "3in")
