@@ -310,7 +310,8 @@ class _Drawing:
         shrink = max(2.0, max(size) / DEVICE_SIDE)
         smaller = f"{max(1, math.floor(size[0] / shrink))}x{max(1, math.floor(size[1] / shrink))}"
         # a page draws itself, and no grid comes near to a photo of noise or fine texture: half of it is enough to hatch
-        if self.ending == ".html" or not self.chain.run("reduce", [*reduce, "--auto", "--seen-at", repr(self.width), samples], reduced, may_fail=True):
+        auto = [*reduce, "--auto", "--seen-at", repr(self.width), samples]
+        if self.ending == ".html" or not self.chain.run("reduce", auto, reduced, may_fail=True):
             self.chain.run("reduce", [*reduce, "--size", smaller, samples], reduced)
         blast = self.stages["blast"]
         layer: dict[str, Any] = {"samples": reduced, "edges": edges, "texture": blast.get("texture", "crosshatch")}
