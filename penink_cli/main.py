@@ -13,7 +13,7 @@ import os
 import re
 import sys
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import click
 
@@ -23,40 +23,63 @@ if TYPE_CHECKING:
 from penink_cli import __version__
 from penink_cli.ground import streams
 from penink_cli.ground.errors import PeninkError, printable
+from penink_cli.outputs.registry import OUTPUTS
 
-# Subcommand -> (module in penink_cli.commands, first line of its help). A table, so that neither
-# `penink --help` nor one subcommand pays for the imports of all others.
+
+class Entry(NamedTuple):
+    """What there is to know of a subcommand before its module is loaded.
+
+    reads, writes: for the README's table. summary: first line of its help. parts: its own subcommands.
+    """
+
+    reads: str
+    writes: str
+    summary: str
+    parts: tuple[str, ...] = ()
+
+
+def _outputs(reads: str) -> dict[str, Entry]:
+    """The subcommands of the outputs that are made of strokes, or of illustrations."""
+    found = {name: output for name, output in OUTPUTS.items() if output.reads == reads}
+    return {name: Entry(reads, output.endings, output.summary) for name, output in found.items()}
+
+
+# One line a subcommand, and its module in penink_cli.commands: `to-svg` is the function `to_svg` in to_svg.py. A table,
+# so that neither `penink --help` nor one subcommand pays for the imports of all others.
 SUBCOMMANDS = {
-    "compose": ("compose", "Make the grey that a drawing is to have, from a photo."),
-    "detect-edges": ("detect_edges", "Find the discontinuity edges of a photograph."),
-    "detect-lines": ("detect_lines", "Find the telling lines of a photograph."),
-    "extract-samples": ("extract_samples", "Take grey samples that no edge has contaminated."),
-    "show-edges": ("show_edges", "Draw a photograph with its edges, for people to look at."),
-    "detect-directions": ("detect_directions", "Find the directions that strokes are to follow in a photograph."),
-    "show-directions": ("show_directions", "Draw a photograph with its directions, for people to look at."),
-    "reduce": ("reduce", "Reduce samples to a coarser grid without mixing across edges."),
-    "enlarge": ("enlarge", "Reconstruct the image at any size, sharp across edges and smooth elsewhere."),
-    "blast": ("blast", "Turn grey into pen strokes of the same tone."),
-    "separate": ("separate", "Make the overlay of one layer: grey where it is, white elsewhere."),
-    "lines": ("lines", "Turn telling lines into pen strokes for one size on paper."),
-    "outline": ("outline", "Turn discontinuity edges into smooth outline strokes."),
-    "render": ("render", "Draw an illustration anew for one size and one device."),
-    "draw": ("draw", "Turn a photo into a pen-and-ink drawing, the whole chain in one call."),
-    "style": ("style", "List and show styles of drawing."),
-    "texture": ("texture", "List, show, make and import stroke textures."),
-    "pack": ("pack", "Pack an illustration and its members in one small file."),
-    "to-html": ("to_html", "Write an illustration as one web page that draws itself."),
-    "to-ps": ("to_ps", "Write strokes as PostScript."),
-    "to-svg": ("to_svg", "Write strokes as SVG, for drawing programs, the web and pen plotters."),
-    "to-pdf": ("to_pdf", "Write strokes as a PDF page of vector paths."),
-    "to-pgm": ("to_pgm", "Draw strokes into a grey image, by the area that ink covers."),
-    "to-png": ("to_png", "Draw strokes into a PNG image, by the area that ink covers."),
-    "measure": ("measure", "Measure a drawing: its tone against what it is to show, how its strokes lie."),
-    "compare": ("compare", "Say whether two drawings, or two pictures, are the same, to a tolerance."),
-    "completion": ("completion", "Print what makes a shell complete penink's words."),
+    "compose": Entry("photo", "PGM", "Make the grey that a drawing is to have, from a photo."),
+    "detect-edges": Entry("photo", "edges", "Find the discontinuity edges of a photograph."),
+    "detect-lines": Entry("photo", "lines", "Find the telling lines of a photograph."),
+    "extract-samples": Entry("photo, edges", "PGM", "Take grey samples that no edge has contaminated."),
+    "show-edges": Entry("photo, edges", "SVG", "Draw a photograph with its edges, to be looked at."),
+    "detect-directions": Entry("photo, edges", "field", "Find the directions that strokes follow in a photograph."),
+    "show-directions": Entry("photo, field", "SVG", "Draw a photograph with its directions, to be looked at."),
+    "reduce": Entry("PGM, edges", "PGM", "Reduce samples to a coarser grid without mixing across edges."),
+    "enlarge": Entry("PGM, edges", "PGM", "Reconstruct the image at any size, sharp at edges and smooth elsewhere."),
+    "blast": Entry("PGM, edges, field, lines", "strokes", "Turn grey into pen strokes of the same tone."),
+    "separate": Entry("photo", "PGM", "Make the overlay of one layer: grey where it is, white elsewhere."),
+    "lines": Entry("lines", "strokes", "Turn telling lines into pen strokes for one size on paper."),
+    "outline": Entry("edges", "strokes", "Turn discontinuity edges into smooth outline strokes."),
+    "render": Entry("illustration", "strokes", "Draw an illustration anew for one size and one device."),
+    "draw": Entry("photo", "any of these", "Turn a photo into a pen-and-ink drawing, the whole chain in one call."),
+    "style": Entry("", "style", "List and show styles of drawing.", ("list", "show")),
+    "texture": Entry("", "texture", "List, show, make and import stroke textures.", ("list", "show", "make", "import")),
+    **_outputs("illustration"),
+    **_outputs("strokes"),
+    "measure": Entry("strokes", "table", "Measure a drawing: its tone against what it shows, how its strokes lie."),
+    "compare": Entry("strokes, picture", "table", "Say whether two drawings or pictures are the same, to a tolerance."),
+    "completion": Entry("", "script", "Print what makes a shell complete penink's words."),
 }
-# The subcommands of subcommands, which error lines name too.
-PARTS = {"style": ("list", "show"), "texture": ("list", "show", "make", "import")}
+
+
+def command_of(name: str) -> click.Command:
+    """The subcommand of that name, its module loaded."""
+    if name in OUTPUTS and not OUTPUTS[name].own:
+        made: click.Command = importlib.import_module("penink_cli.commands.to_output").subcommand(name)
+        return made
+    module = name.replace("-", "_")
+    command: click.Command = getattr(importlib.import_module(f"penink_cli.commands.{module}"), module)
+    return command
 
 
 class LazyGroup(click.Group):
@@ -67,12 +90,8 @@ class LazyGroup(click.Group):
         return list(SUBCOMMANDS)
 
     def get_command(self, ctx: click.Context, name: str) -> click.Command | None:
-        """The subcommand of that name; its function is named as its module."""
-        if name not in SUBCOMMANDS:
-            return None
-        module = SUBCOMMANDS[name][0]
-        command: click.Command = getattr(importlib.import_module(f"penink_cli.commands.{module}"), module)
-        return command
+        """The subcommand of that name."""
+        return command_of(name) if name in SUBCOMMANDS else None
 
     def resolve_command(
         self, ctx: click.Context, args: list[str]
@@ -90,13 +109,13 @@ class LazyGroup(click.Group):
         """Subcommands from the table, importing none, and the group's own options."""
         from click.shell_completion import CompletionItem
 
-        named = [CompletionItem(n, help=h) for n, (_, h) in SUBCOMMANDS.items() if n.startswith(incomplete)]
+        named = [CompletionItem(n, help=s.summary) for n, s in SUBCOMMANDS.items() if n.startswith(incomplete)]
         return named + click.Command.shell_complete(self, ctx, incomplete)
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """List the subcommands from the table, importing none."""
         with formatter.section("Subcommands"):
-            formatter.write_dl([(name, first_line) for name, (_, first_line) in SUBCOMMANDS.items()])
+            formatter.write_dl([(name, entry.summary) for name, entry in SUBCOMMANDS.items()])
 
 
 @click.command(cls=LazyGroup, name="penink", no_args_is_help=False, subcommand_metavar="SUBCOMMAND [OPTIONS] [FILE]")
@@ -136,7 +155,7 @@ def _run(arguments: Sequence[str]) -> int:
     path = "penink"
     if arguments and arguments[0] in SUBCOMMANDS:
         path = f"penink {arguments[0]}"
-        if arguments[1:] and arguments[1] in PARTS.get(arguments[0], ()):
+        if arguments[1:] and arguments[1] in SUBCOMMANDS[arguments[0]].parts:
             path += f" {arguments[1]}"
     try:
         result = penink.main(args=list(arguments), prog_name="penink", standalone_mode=False)

@@ -1,6 +1,6 @@
-"""Man pages and shell completion, made from the same help texts that ``--help`` prints.
+"""What follows from the registries and the help texts: man pages, shell completion, the README's table of filters.
 
-``python -m penink_cli.manual`` writes them into penink_cli/share, whence they are installed.
+``python -m penink_cli.manual`` writes them, the first two into penink_cli/share, whence they are installed.
 """
 
 from __future__ import annotations
@@ -60,8 +60,8 @@ def man_page(name: str | None) -> str:
         lines += _parts(command, context)
     if name is None:
         lines += [".SH SUBCOMMANDS"]
-        for other, (_, text) in SUBCOMMANDS.items():
-            lines += [".TP", rf".BR penink\-{_escaped(other)} (1)", _escaped(text)]
+        for other, entry in SUBCOMMANDS.items():
+            lines += [".TP", rf".BR penink\-{_escaped(other)} (1)", _escaped(entry.summary)]
     examples = _examples(paragraphs)
     lines += [".SH EXAMPLES", *examples] if examples else []
     lines += _COMMON.strip().split("\n")
@@ -142,13 +142,32 @@ def files() -> Iterator[tuple[str, str]]:
     yield "fish/vendor_completions.d/penink.fish", completion_script("fish")
 
 
+def filter_table() -> str:
+    """The README's table of the filters."""
+    rows = [f"| `{name}` | {entry.reads} | {entry.writes} | {entry.summary} |" for name, entry in SUBCOMMANDS.items()]
+    return "\n".join(["| filter | reads | writes | |", "| --- | --- | --- | --- |", *rows])
+
+
+def derived() -> Iterator[tuple[Path, str]]:
+    """Files of the project of which a part follows from the registries, where they are, and their whole text."""
+    readme = Path(__file__).parent.parent / "README.md"
+    if readme.exists():  # not where the package is installed
+        text = readme.read_text("utf-8")
+        head, rest = text.split("<!-- the filters, by `make manual` -->\n\n", 1)
+        _, tail = rest.split("\n\n", 1)
+        yield readme, f"{head}<!-- the filters, by `make manual` -->\n\n{filter_table()}\n\n{tail}"
+
+
 def main() -> None:
-    """Write all files below the folder given, by default the package's own share."""
+    """Write all files below the folder given; without one those of the project, the package's own share among them."""
     root = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).parent / "share"
     for name, text in files():
         target = root / name
         os.makedirs(target.parent, exist_ok=True)
         target.write_text(text, encoding="ascii")
+    if len(sys.argv) == 1:
+        for target, text in derived():
+            target.write_text(text, encoding="utf-8")
 
 
 if __name__ == "__main__":

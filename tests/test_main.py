@@ -15,7 +15,7 @@ import pytest
 
 from penink_cli import main
 from penink_cli.ground import errors, units
-from penink_cli.main import PARTS, SUBCOMMANDS
+from penink_cli.main import SUBCOMMANDS, command_of
 from penink_cli.options import common as options
 from penink_cli.reconstruction import lanes
 from tests.conftest import ROOT, environment
@@ -33,11 +33,10 @@ def test_each_kernel_was_found_by_the_build(kernel):
 
 @pytest.mark.parametrize("name", SUBCOMMANDS)
 def test_every_subcommand_is_described_in_the_table_as_in_its_docstring(name):
-    module, first_line = SUBCOMMANDS[name]
-    command = getattr(importlib.import_module(f"penink_cli.commands.{module}"), module)
+    command = command_of(name)
     assert isinstance(command, click.Command)
     assert command.name == name
-    assert command.help.splitlines()[0] == first_line
+    assert command.help.splitlines()[0] == SUBCOMMANDS[name].summary
     for parameter in command.params:
         if isinstance(parameter, click.Option):
             assert parameter.help, f"{name} {parameter.opts} has no help"
@@ -110,10 +109,10 @@ def test_an_error_line_names_the_subcommand_of_a_subcommand(penink):
 
 
 def test_the_table_of_subcommands_of_subcommands_is_whole():
-    for name, (module, _) in SUBCOMMANDS.items():
-        command = getattr(importlib.import_module(f"penink_cli.commands.{module}"), module)
+    for name, entry in SUBCOMMANDS.items():
+        command = command_of(name)
         parts = tuple(command.commands) if isinstance(command, click.Group) else ()
-        assert PARTS.get(name, ()) == parts
+        assert entry.parts == parts
 
 
 def test_a_backslash_is_shown_once(penink):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib
 import json
 import os
 import re
@@ -15,7 +14,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from penink_cli.main import SUBCOMMANDS
+from penink_cli.main import SUBCOMMANDS, command_of
 from tests.conftest import ROOT, environment
 
 README = (ROOT / "README.md").read_text("utf-8")
@@ -27,7 +26,7 @@ CALLS = sorted(set(re.findall(r"(?<![/\w-])penink ([a-z][a-z-]*)([^|`>;\n]*)", C
 @pytest.mark.parametrize(("name", "words"), CALLS)
 def test_every_command_and_option_exists(name, words):
     assert name in SUBCOMMANDS
-    command = getattr(importlib.import_module(f"penink_cli.commands.{SUBCOMMANDS[name][0]}"), SUBCOMMANDS[name][0])
+    command = command_of(name)
     if isinstance(command, click.Group) and words.split():
         command = command.commands[words.split()[0]]
     known = {option for p in command.params if isinstance(p, click.Option) for option in (*p.opts, *p.secondary_opts)}

@@ -47,7 +47,7 @@ def compare(
     max_pixels: int,
     **_: Any,
 ) -> None:
-    """Say whether two drawings, or two pictures, are the same, to a tolerance.
+    """Say whether two drawings or pictures are the same, to a tolerance.
 
     Two strokes files, or two pictures (PGM, PNG …) of one size: the same in tone, and in place. Exit status 0 where
     they are, 1 with a line where they are not; the figures go to standard output.

@@ -62,7 +62,7 @@ def detect_directions(
     lines_file: str | None,
     **choices: Any,
 ) -> None:
-    """Find the directions that strokes are to follow in a photograph.
+    """Find the directions that strokes follow in a photograph.
 
     The result is a field of angles, three PGM images in one stream, for drawings of any size. Colours count: give the
     photo itself and not its grey.

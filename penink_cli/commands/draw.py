@@ -29,7 +29,7 @@ from penink_cli.options.layers import colour_option, page_options
 from penink_cli.options.sheet import check_sheet
 from penink_cli.options.styles import STYLE, find_style
 from penink_cli.options.textures import TEXTURE, find_texture
-from penink_cli.outputs.registry import ENDINGS, OF_ILLUSTRATIONS, OF_STROKES, ON_SCREEN, STROKES
+from penink_cli.outputs.registry import endings, of_illustrations, on_screen, writer
 
 if TYPE_CHECKING:
     from penink_cli.formats.style import Style, Value
@@ -86,7 +86,7 @@ _TOLD = {
     type=DeviceDpi(),
     metavar="N|none",
     help="Resolution of the printer, which paints every dot that a stroke touches; none for plotters and screens."
-    "  [default: 600, for .png, .pgm and .svg none]",
+    f"  [default: 600, for {', '.join(filter(on_screen, endings()))} none]",
 )
 @click.option("--outlines/--no-outlines", default=None, help="Strokes along strong edges.  [default: the style's]")
 @click.option("--lines/--no-lines", default=None, help="Telling lines.  [default: the style's]")
@@ -117,8 +117,8 @@ def draw(
 ) -> None:
     """Turn a photo into a pen-and-ink drawing, the whole chain in one call.
 
-    The result is PostScript, or what the ending of -o says: .ps, .eps, .svg, .pdf, .png, .pgm, .jsonl (strokes),
-    .penink, the illustration itself, which `penink render` draws at any size, or .html, a page that draws it.
+    The result is PostScript, or what the ending of -o says: ENDINGS. Of these .jsonl is the strokes, .penink the
+    illustration itself, which `penink render` draws at any size, and .html a page that draws it.
     --verbose prints the chain of filters that gives the same bytes.
 
     \b
@@ -130,8 +130,8 @@ def draw(
     context = click.get_current_context()
     given = {name: value for name, value in context.params.items() if _is_given(context, name)}
     ending = os.path.splitext(output or "-")[1].lower() or ".ps"  # a FIFO or device has no ending
-    if ending not in ENDINGS:
-        raise click.UsageError(f"-o {in_quotes(output or '')}: known endings are {', '.join(ENDINGS)}")
+    if ending not in endings():
+        raise click.UsageError(f"-o {in_quotes(output or '')}: known endings are {', '.join(endings())}")
     if width is not None and height is not None:
         raise click.UsageError("give one of --width and --height")
     own_texture = given.get("texture_name")
@@ -152,8 +152,11 @@ def draw(
         limit = max_pixels if "max_pixels" in given else None
         say = (lambda line: click.echo(line, err=True)) if verbose else (lambda line: None)
         chain = Chain(files, taken, threads, limit, say, lambda: advance(1))
-        device_dpi = given.get("device_dpi", None if ending in ON_SCREEN else PRINTER_DPI)
+        device_dpi = given.get("device_dpi", None if on_screen(ending) else PRINTER_DPI)
         _Drawing(chain, stages, given, width, rows / columns, ending, device_dpi).draw(file, shape, output, page)
+
+
+draw.help = (draw.help or "").replace("ENDINGS", ", ".join(endings()))
 
 
 def _is_given(context: click.Context, name: str) -> bool:
@@ -162,8 +165,8 @@ def _is_given(context: click.Context, name: str) -> bool:
 
 def _page_words(ending: str, given: dict[str, Any]) -> list[str]:
     """What the filter that writes the picture is told of the page; UsageError where it knows no such thing."""
-    writer = {**OF_STROKES, **OF_ILLUSTRATIONS}.get(ending)
-    known = {parameter.name for parameter in found(writer).params} if writer else set()
+    by = writer(ending)
+    known = {parameter.name for parameter in found(by).params} if by else set()
     words: list[str] = []
     for name in ("paper", "margin", "landscape", "colours", "order"):
         if name not in given:
@@ -234,7 +237,7 @@ class _Drawing:
             lines = self.run("detect-lines", [*self.words("lines", "detect-lines"), *photo], "lines.json")
         directions = self.directions(photo, edges, lines)
         samples = self.run("extract-samples", ["-e", edges, grey], "samples.pgm")
-        if self.ending in OF_ILLUSTRATIONS:
+        if of_illustrations(self.ending):
             self.illustrated(grey, size, edges, lines, directions, samples, output, page)
             return
         over = self.over(size, edges, lines)
@@ -252,10 +255,11 @@ class _Drawing:
         )
         if not any(self.chain.lines(name) > 1 for name in (hatching, *over)):
             warn("a drawing without a stroke: the photo is paper white, or was made so")
-        if self.ending == STROKES:
+        by = writer(self.ending)
+        if by is None:
             self.chain.joined([hatching, *over], output)
         else:
-            self.chain.run(OF_STROKES[self.ending], [*page, hatching, *over], output)
+            self.chain.run(by, [*page, hatching, *over], output)
 
     def composed(self, photo: list[str], shape: tuple[int, ...]) -> tuple[str, tuple[int, int]]:
         """The grey of the drawing, and its width and height."""
@@ -264,7 +268,7 @@ class _Drawing:
         told = self.words("compose", "compose")
         told += ["--mask", self.given["mask"]] if "mask" in self.given else []
         dpi = COMPOSED_DPI
-        if self.ending in OF_ILLUSTRATIONS:
+        if of_illustrations(self.ending):
             dpi = POSTER_DPI
             told += ["--dpi", repr(dpi)]
         grey = self.run("compose", [*self.on_paper, *told, *photo], "grey.pgm")
@@ -341,7 +345,9 @@ class _Drawing:
         manifest |= {"height": self.width * self.aspect, "layers": [layer]}
         name = self.chain.name("drawing.illustration.json")
         self.chain.put(name, json.dumps(manifest) + "\n")
-        self.chain.run(OF_ILLUSTRATIONS[self.ending], [*page, name], output)
+        by = writer(self.ending)
+        assert by is not None
+        self.chain.run(by, [*page, name], output)
 
 
 def _least_length(size: tuple[int, int]) -> int:

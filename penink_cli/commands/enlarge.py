@@ -52,7 +52,7 @@ def enlarge(
     maxval: int | None,
     threads: int | None,
 ) -> None:
-    """Reconstruct the image at any size, sharp across edges and smooth elsewhere.
+    """Reconstruct the image at any size, sharp at edges and smooth elsewhere.
 
     The edge list may be that of the photograph: its edges are scaled to the samples.
 

@@ -47,7 +47,7 @@ def measure(
     max_pixels: int,
     **_: Any,
 ) -> None:
-    """Measure a drawing: its tone against what it is to show, how its strokes lie.
+    """Measure a drawing: its tone against what it shows, how its strokes lie.
 
     Tone is what the eye sees, a Gaussian of 1/16 inch, in percent of solid ink. Several FILEs are layers.
 

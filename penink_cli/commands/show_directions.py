@@ -33,7 +33,7 @@ def show_directions(
     lines: int,
     scale: float,
 ) -> None:
-    """Draw a photograph with its directions, for people to look at.
+    """Draw a photograph with its directions, to be looked at.
 
     The result is SVG: the photo, pale, and short lines as strokes would lie, from blue (the form says so) to orange
     (nothing is known, the hatch keeps its own angle).

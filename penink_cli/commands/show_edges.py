@@ -30,7 +30,7 @@ def show_edges(
     margin: float | None,
     scale: float,
 ) -> None:
-    """Draw a photograph with its edges, for people to look at.
+    """Draw a photograph with its edges, to be looked at.
 
     The result is SVG: the photo, pale; edges from blue (faint) to red (strong); open ends in black
     circles, junctions in green ones; pixels that extract-samples replaces in yellow.

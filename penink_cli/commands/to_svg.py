@@ -60,7 +60,7 @@ def to_svg(
     quiet: bool,
     **_: Any,
 ) -> None:
-    """Write strokes as SVG, for drawing programs, the web and pen plotters.
+    """Write strokes as SVG, for drawing programs, the web, plotters.
 
     Each stroke is a path of its real width, in millimetres; of one that swells it is the outline,
     filled. Several FILEs are layers, the first at the bottom, and Inkscape and vpype see them as

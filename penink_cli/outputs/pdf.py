@@ -9,15 +9,23 @@ from __future__ import annotations
 import io
 import zlib
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
-import numpy as np
-import pydyf
+if TYPE_CHECKING:  # the help text needs none of it
+    import numpy as np
 
-from penink_cli.formats.strokes import Sink
-from penink_cli.ground.model import Strokes
-from penink_cli.outputs import swelling, words
-from penink_cli.outputs.page import Page
+    from penink_cli.formats.strokes import Sink
+    from penink_cli.ground.model import Strokes
+    from penink_cli.outputs.page import Page
 
+GUIDE = """
+The page has the picture's size, or is the --paper. Several FILEs are layers, the first at the
+bottom, which viewers can switch on and off.
+
+\b
+penink to-pdf photo.strokes.jsonl -o photo.pdf
+penink to-pdf --paper letter --margin 0.5in photo.strokes.jsonl -o photo.pdf
+"""
 DECIMALS = 3  # of a point
 MOST = 14400  # a side of a page in user-space units, beyond which viewers differ
 
@@ -26,6 +34,8 @@ def write(
     out: Sink, layers: Sequence[Strokes], page: Page, colours: Sequence[tuple[float, float, float]] = ()
 ) -> None:
     """Write a PDF 1.5 file; the first layer is at the bottom. Colours: red, green, blue (0 … 1) of each layer."""
+    import pydyf
+
     document = pydyf.PDF()
     content = [b"1 J 1 j\n"]
     properties, groups = pydyf.Dictionary(), pydyf.Array()
@@ -68,6 +78,10 @@ def write(
 
 def _paths(layer: Strokes, page: Page) -> list[bytes]:
     """The operators that draw a layer, each stroke by itself, the pen set where it changes."""
+    import numpy as np
+
+    from penink_cli.outputs import words
+
     if not len(layer):
         return []
     counts = np.diff(layer.first)
@@ -96,6 +110,10 @@ def _paths(layer: Strokes, page: Page) -> list[bytes]:
 
 def _outlines(strokes: Strokes, page: Page) -> bytes:
     """The operators that fill the outlines of strokes that swell."""
+    import numpy as np
+
+    from penink_cli.outputs import swelling, words
+
     points, first = swelling.outlines(strokes)
     numbers = words.whole((points * (1, -1) + np.array((page.x, page.height - page.y))) * 10**DECIMALS)
     inner = np.arange(len(numbers)) - np.repeat(first[:-1], np.diff(first))

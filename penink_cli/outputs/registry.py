@@ -1,19 +1,85 @@
-"""By the ending of a file's name, the subcommand that writes such a file."""
+"""The outputs: what `draw` writes by the ending of -o, and the subcommands that write it.
+
+One line of `OUTPUTS` and one module, `outputs/NAME.py` for `to-NAME`, make an output. The module has
+
+    GUIDE: what the help text says after its first line, with an example
+    OPTIONS: options of its own (`Option`), a tuple that may be missing
+    write(out, layers, page, colours, **options): writes the layers, the first at the bottom, on a `Page`
+
+The subcommand, its man page and completion, `draw`'s endings, the README's table and the tests that run over all
+subcommands follow from the line. An output that wants more than this (`own`) brings its subcommand itself,
+`commands/to_name.py`, and calls whatever writes it.
+"""
 
 from __future__ import annotations
 
-#: Of strokes, each file a layer.
-OF_STROKES = {
-    ".ps": "to-ps",
-    ".eps": "to-ps",
-    ".svg": "to-svg",
-    ".pdf": "to-pdf",
-    ".png": "to-png",
-    ".pgm": "to-pgm",
-}
-#: Of an illustration.
-OF_ILLUSTRATIONS = {".penink": "pack", ".html": "to-html"}
-STROKES = ".jsonl"  # the strokes themselves
+import math
+from dataclasses import dataclass
 
-ENDINGS = (*OF_STROKES, STROKES, *OF_ILLUSTRATIONS)
-ON_SCREEN = (".png", ".svg", ".pgm")  # looked at as they are, mostly; a printer would darken them
+
+@dataclass(frozen=True)
+class Output:
+    """What is written.
+
+    endings: of files that `draw` writes so, with spaces between them. summary: first line of the subcommand's help.
+    reads: "strokes", each file a layer, or "illustration". own: the subcommand is a module of `penink_cli.commands`.
+    binary: not to be written to a terminal. screen: looked at as it is, mostly, and not printed.
+    """
+
+    endings: str
+    summary: str
+    reads: str = "strokes"
+    own: bool = False
+    binary: bool = False
+    screen: bool = False
+
+
+@dataclass(frozen=True)
+class Option:
+    """An option of one output, which its `write` takes by the same name.
+
+    default: False for a flag, a number, or one of the choices. least, most: of a number. length: a number of points,
+    which may be given in other units.
+    """
+
+    name: str
+    help: str
+    default: bool | float | str
+    choices: tuple[str, ...] = ()
+    least: float = -math.inf
+    most: float = math.inf
+    length: bool = False
+
+
+OUTPUTS = {
+    "pack": Output(".penink", "Pack an illustration and its members in one small file.", "illustration", own=True),
+    "to-html": Output(".html", "Write an illustration as one web page that draws itself.", "illustration", own=True),
+    "to-ps": Output(".ps .eps", "Write strokes as PostScript.", own=True),
+    "to-svg": Output(".svg", "Write strokes as SVG, for drawing programs, the web, plotters.", own=True, screen=True),
+    "to-pdf": Output(".pdf", "Write strokes as a PDF page of vector paths.", binary=True),
+    "to-png": Output(".png", "Draw strokes into a PNG image, by the area that ink covers.", own=True, screen=True),
+    "to-pgm": Output(".pgm", "Draw strokes into a grey image, by the area that ink covers.", own=True, screen=True),
+}
+
+STROKES = ".jsonl"  # the strokes themselves, which no output writes
+_BY_ENDING = {ending: name for name, output in OUTPUTS.items() for ending in output.endings.split()}
+
+
+def endings() -> list[str]:
+    """All endings that a drawing may have, of strokes first."""
+    return sorted([STROKES, *_BY_ENDING], key=of_illustrations)
+
+
+def writer(ending: str) -> str | None:
+    """The subcommand that writes files of that ending; None for strokes."""
+    return _BY_ENDING.get(ending)
+
+
+def of_illustrations(ending: str) -> bool:
+    """Whether such a file is made of an illustration, and not of strokes."""
+    return ending in _BY_ENDING and OUTPUTS[_BY_ENDING[ending]].reads == "illustration"
+
+
+def on_screen(ending: str) -> bool:
+    """Whether such a file is looked at as it is, mostly; a printer would darken it."""
+    return ending in _BY_ENDING and OUTPUTS[_BY_ENDING[ending]].screen

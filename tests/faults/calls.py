@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import io
 import json
+import re
+import shlex
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -11,6 +13,7 @@ import numpy as np
 
 from penink_cli.formats import directions, edge_list, pgm
 from penink_cli.ground.model import Directions, EdgeList, GreyImage
+from penink_cli.main import SUBCOMMANDS, command_of
 
 WIDTH, HEIGHT = 24, 18
 
@@ -27,34 +30,54 @@ class Call:
     arguments: tuple[str, ...] = ()
 
 
-CALLS = {
+# Calls with less to do than the examples of the help texts have, for these small inputs.
+OWN = {
     "compose": Call("photo.png", ("--width", "0.35in")),
     "detect-edges": Call("photo.png"),
-    "detect-lines": Call("photo.png"),
-    "extract-samples": Call("photo.png", ("-e", "photo.edges.json")),
     "detect-directions": Call("photo.png", ("-e", "photo.edges.json", "--strokes", "photo.strokes.jsonl")),
-    "show-directions": Call("photo.png", ("-e", "photo.edges.json", "--directions", "photo.directions.pgm")),
     "reduce": Call("samples.pgm", ("-e", "photo.edges.json", "--factor", "2")),
     "enlarge": Call("samples.pgm", ("-e", "photo.edges.json", "--scale", "3")),
     "blast": Call("samples.pgm", ("--texture", "crosshatch", "--width", "0.35in", "-e", "photo.edges.json")),
     "to-ps": Call("photo.strokes.jsonl"),
-    "to-svg": Call("photo.strokes.jsonl"),
-    "to-pdf": Call("photo.strokes.jsonl"),
     "to-pgm": Call("photo.strokes.jsonl", ("--dpi", "100")),
     "to-png": Call("photo.strokes.jsonl", ("--dpi", "100")),
-    "show-edges": Call("photo.png", ("-e", "photo.edges.json")),
     "separate": Call("photo.png", ("--grey", "0,0.5")),
     "lines": Call("photo.lines.json", ("--width", "0.35in")),
     "outline": Call("photo.edges.json", ("--width", "0.35in")),
     "render": Call("photo.illustration.json", ("--scale", "1")),
     "draw": Call("photo.png", ("--width", "0.35in", "--texture", "crosshatch")),
-    "pack": Call("photo.illustration.json"),
-    "to-html": Call("photo.illustration.json"),
-    "measure": Call("photo.strokes.jsonl", ("--against", "samples.pgm")),
     "compare": Call("photo.strokes.jsonl", ("photo.strokes.jsonl",)),
     "style": Call(None, ("show", "true")),
     "texture": Call(None, ("make", "brick", "--seed", "1")),
 }
+# What the files of examples are here, by how their names end.
+STANDS_FOR = {
+    ".strokes.jsonl": "photo.strokes.jsonl",
+    "e.json": "photo.edges.json",
+    ".edges.json": "photo.edges.json",
+    ".lines.json": "photo.lines.json",
+    ".directions.pgm": "photo.directions.pgm",
+    ".illustration.json": "photo.illustration.json",
+    ".penink": "photo.illustration.json",
+    ".png": "photo.png",
+    ".jpg": "photo.png",
+    ".pgm": "samples.pgm",
+}
+
+
+def from_example(name: str) -> Call:
+    """The first example of the subcommand's help text as a call: what it reads comes last there."""
+    example = re.search(rf"penink {name} ([^|>\n]*)", command_of(name).help or "")
+    assert example, f"{name}: no example in its help text"
+    words = [*shlex.split(example[1]), ""]
+    if "-o" in words:
+        del words[words.index("-o") : words.index("-o") + 2]
+    known = [next((file for end, file in STANDS_FOR.items() if word.endswith(end)), word) for word in words if word]
+    return Call(known[-1], tuple(known[:-1]))
+
+
+#: Every subcommand but `completion`, which is no filter: it prints a few words.
+CALLS = {name: OWN.get(name) or from_example(name) for name in SUBCOMMANDS if name != "completion"}
 
 
 def encoded(write: object, value: object) -> bytes:

@@ -13,7 +13,6 @@ from pathlib import Path
 
 import pytest
 
-from penink_cli.main import SUBCOMMANDS
 from tests.conftest import environment
 from tests.faults.calls import CALLS, arguments
 from tests.faults.forkserver import ForkServer
@@ -40,10 +39,6 @@ def expected(server: ForkServer, inputs: Path) -> dict[str, bytes]:
         assert (done.status, done.err) == (0, b"") and done.out, (name, done)
         found[name] = done.out
     return found
-
-
-def test_every_subcommand_is_under_test():
-    assert set(CALLS) == set(SUBCOMMANDS) - {"completion"}  # which is no filter: it prints a few words
 
 
 @readers

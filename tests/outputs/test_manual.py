@@ -70,9 +70,9 @@ def place(tmp_path_factory):
 
 
 def test_every_subcommand_says_what_it_does_with_an_example():
-    for name, (_, first_line) in SUBCOMMANDS.items():
+    for name, entry in SUBCOMMANDS.items():
         text = command_of(name).help
-        assert len(first_line) < 80, name
+        assert len(entry.summary) < 80, name
         assert len(manual._paragraphs(text)) > 1, name
         assert any("penink" in example for example in examples(name)), f"{name} has no example"
 
@@ -96,6 +96,11 @@ def test_the_files_that_are_installed_are_what_the_help_texts_say():
         assert (SHARE / name).read_text("ascii") == text, f"{name} is out of date: python -m penink_cli.manual"
     installed = {str(p.relative_to(SHARE)) for p in SHARE.rglob("*") if p.is_file()}
     assert installed == {name for name, _ in manual.files()}
+
+
+def test_what_follows_from_the_registries_does():
+    for path, text in manual.derived():
+        assert path.read_text("utf-8") == text, f"{path.name} is out of date: python -m penink_cli.manual"
 
 
 def test_a_man_page_holds_the_whole_help():
