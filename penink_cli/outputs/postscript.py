@@ -192,37 +192,70 @@ def _body(
 ) -> tuple[list[bytes], tuple[int, int]]:
     """The arrays of one layer, beginning with the pen at ``at``, and where it is left."""
     parts: list[bytes] = []
-    pen = 0.0
     swells = strokes.swells
     if swells.any():
         numbers, first, at = _swelling(strokes.taken(swells), units, at, order)
         parts += [b"{", bytes(_ragged(numbers, first))]
         strokes = strokes.taken(~swells)
-    for kind, k, group in _groups(_split(strokes), units):
-        if group.widths[0] != pen:
-            pen = group.widths[0]
-            parts.append(b"%s w\n" % _number(pen * units))
-        rows, ends = _rows(kind, k, order(group), units)
-        rows[:, :2] = ends[:, :2] - np.vstack([at, ends[:-1, 2:]])
-        at = (int(ends[-1, 2]), int(ends[-1, 3]))
-        call = b"}d\n" if kind == "d" else b"}%d %s\n" % (k, kind.encode())
-        parts += [b"{", bytes(_arrays(rows, SEGMENT[kind], call))]
+    groups = [(kind, k, order(group)) for kind, k, group in _groups(_split(strokes), units)]
+    if groups:
+        text, at = _even(groups, units, at)
+        parts += text
     return parts, at
 
 
-def _arrays(rows: Ints, step: int, call: bytes) -> memoryview:
-    """Rows of numbers as arrays of some 400, a line ending after each stroke, or segment of a long one."""
-    after = np.zeros(rows.shape, np.int32)
-    if rows.shape[1] > 24:
+def _even(
+    groups: list[tuple[str, int, Strokes]], units: int, at: tuple[int, int]
+) -> tuple[list[bytes], tuple[int, int]]:
+    """Groups of strokes of one width each as arrays, each pen named where it changes; and where the last stroke ends.
+
+    A group may be of a single stroke and there may be a thousand, so all their numbers become text in one go.
+    """
+    alike: dict[tuple[str, int], list[int]] = {}
+    for g, (kind, k, _) in enumerate(groups):
+        alike.setdefault((kind, k), []).append(g)
+    sizes = np.array([len(group) for _, _, group in groups])
+    begins = np.cumsum(sizes) - sizes  # of each group, its first stroke
+    place = np.cumsum([0, *np.repeat([2 + k * SEGMENT[kind] for kind, k, _ in groups], sizes)])
+    numbers, after = np.empty(place[-1], np.int64), np.empty(place[-1], np.int32)
+    ends = np.empty((len(place) - 1, 4), np.int64)
+    calls: list[bytes] = []
+    for (kind, k), which in alike.items():
+        count = sizes[which]
+        rank = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count)
+        strokes = np.repeat(begins[which], count) + rank
+        points = np.concatenate([groups[g][2].points for g in which]).reshape(len(strokes), 3 * k + 1, 2)
+        rows, ends[strokes] = _rows(kind, k, points, units)
+        at_rows = place[strokes][:, None] + np.arange(rows.shape[1])
+        numbers[at_rows] = rows
+        after[at_rows] = _breaks(rank, rows.shape[1], SEGMENT[kind], 2 + len(calls))
+        calls.append(b"}d\n{" if kind == "d" else b"}%d %s\n{" % (k, kind.encode()))
+    ways = ends[:, :2] - np.vstack([at, ends[:-1, 2:]])
+    numbers[place[:-1]], numbers[place[:-1] + 1] = ways[:, 0], ways[:, 1]
+    pens = [b"%s w\n{" % _number(group.widths[0] * units) for _, _, group in groups]
+    names = {key: call.removesuffix(b"{") for key, call in zip(alike, calls)}
+    closing = []
+    for g, (kind, k, group) in enumerate(groups):
+        closing.append(names[kind, k])
+        if g + 1 < len(groups):
+            closing[g] += b"{" if groups[g + 1][2].widths[0] == group.widths[0] else pens[g + 1]
+    after[place[begins + sizes] - 1] = 2 + len(calls) + np.arange(len(groups))
+    text = words.text(numbers, after, [b" ", b"\n", *calls, *closing])
+    return [pens[0], bytes(text)], (int(ends[-1, 2]), int(ends[-1, 3]))
+
+
+def _breaks(rank: Ints, length: int, step: int, full: int) -> npt.NDArray[np.int32]:
+    """What follows each number of strokes of so many: a line ends after each stroke, or segment of a long one.
+
+    rank: of each stroke in its group. full: what follows an array of some 400 numbers.
+    """
+    after = np.zeros((len(rank), length), np.int32)
+    if length > 24:
         after[:, 1::step] = 1
-    if not step:
-        after[7::8, -1] = 1  # eight dots a line
-    else:
-        after[:, -1] = 1
-    every = max(1, NUMBERS // rows.shape[1])
-    after[every - 1 :: every, -1] = 2
-    after[-1, -1] = 3
-    return words.text(rows.ravel(), after.ravel(), [b" ", b"\n", call + b"{", call])
+    after[:, -1] = 1 if step else rank % 8 == 7  # eight dots a line
+    every = max(1, NUMBERS // length)
+    after[rank % every == every - 1, -1] = full
+    return after
 
 
 def _swelling(
@@ -299,12 +332,12 @@ def _groups(strokes: Strokes, units: int) -> Iterator[tuple[str, int, Strokes]]:
             yield list(SEGMENT)[kind[i]], int(segments[i]), group
 
 
-def _rows(kind: str, k: int, strokes: Strokes, units: int) -> tuple[Ints, Ints]:
-    """What a group's array holds, a row a stroke, its first two columns still empty; and x, y of both ends (s, 4)."""
-    exact = strokes.points.reshape(len(strokes), 3 * k + 1, 2) * (units, -units)
+def _rows(kind: str, k: int, points: Floats, units: int) -> tuple[Ints, Ints]:
+    """What arrays of strokes (s, 3k + 1, 2) hold, a row each, two columns still empty; and x, y of both ends (s, 4)."""
+    exact = points * (units, -units)
     grid = words.whole(exact)
     ends = np.hstack([grid[:, 0], grid[:, -1]])
-    rows = np.zeros((len(strokes), 2 + k * SEGMENT[kind] if k else 2), np.int64)
+    rows = np.zeros((len(points), 2 + k * SEGMENT[kind]), np.int64)
     for j in range(k):
         start, goal = grid[:, 3 * j], grid[:, 3 * j + 3]
         numbers = rows[:, 2 + j * SEGMENT[kind] : 2 + (j + 1) * SEGMENT[kind]]

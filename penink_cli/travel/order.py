@@ -32,6 +32,10 @@ def ordered(
     n = len(strokes)
     if n == 0:
         return strokes
+    if n == 1:  # from the end that is nearer to the corner
+        nearer = exact.length(strokes.points[-1]) < exact.length(strokes.points[0])
+        advance(2)
+        return strokes.taken(np.zeros(1, np.int64), np.ones(1, bool)) if nearer else strokes
     ends = np.empty((2 * n, 2))
     ends[0::2] = strokes.points[strokes.first[:-1]]
     ends[1::2] = strokes.points[strokes.first[1:] - 1]

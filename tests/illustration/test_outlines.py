@@ -9,6 +9,7 @@ from penink_cli.blasting import curve_fitting, curves, outlines
 from penink_cli.geometry import regions
 from penink_cli.ground.model import EdgeList, OutlineChoice, Strokes
 from tests.illustration.test_quantisation import distance_to
+from tests.oracles import curve_fitting as slow
 
 
 def ring(n: int, radius: float, x: float = 50, y: float = 50) -> np.ndarray:
@@ -127,6 +128,22 @@ def test_a_region_takes_the_edges_around_it():
 
 def test_nothing_gives_nothing():
     assert len(outlines.outline(EdgeList(10, 10), 100, 100, EVEN)) == 0
+
+
+@pytest.mark.parametrize("tolerance", [0.05, 0.5, 3.0])
+@pytest.mark.parametrize("ring", [False, True])
+@pytest.mark.parametrize("count", [2, 3, 5, 9, 40, 200])
+def test_curves_are_those_of_the_slow_fit(tolerance, ring, count):
+    rng = np.random.default_rng(count)
+    t = np.linspace(0, 6.283, count)
+    walk = np.stack([20 * np.cos(t), 13 * np.sin(3 * t)], axis=1) + rng.normal(0, 0.2, (count, 2))
+    walk[-1] = walk[0] if ring else walk[-1]
+    assert np.allclose(curve_fitting.fit(walk, tolerance, ring), slow.fit(walk, tolerance, ring), rtol=0, atol=1e-6)
+
+
+def test_points_that_are_one_are_a_dot():
+    control = curve_fitting.fit(np.full((7, 2), 3.0), 0.5)
+    assert np.array_equal(control, np.full((len(control), 2), 3.0)) and len(control) % 3 == 1
 
 
 @pytest.mark.parametrize("tolerance", [0.05, 0.5, 3.0])
