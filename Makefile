@@ -8,7 +8,9 @@
 #   make bench      the measurements     make dist    wheel and source distribution
 #   make check-dist both, installed in an empty environment
 #   make check-pythons  the same bytes under every CPython that this machine has (PYTHONS=…)
+#   make check-resolver  whether every dependency is to be had for other interpreters and machines
 #   make check-roots  `make` and `make test` on an otherwise empty Debian 12 and 13 (ROOTS=bookworm)
+#   make cluster    twenty photographs on a Slurm of one node that is started for it, jobs killed, resumed: as root
 #   make fuzz       every reader against anything (SECONDS=600)
 #   make manual     the man pages and completion, from the help texts
 #   make torture    a thousand runs killed, two hundred photographs
@@ -24,7 +26,7 @@ INSTALLED := $(VENV)/.installed
 KERNELS   := $(shell find penink_cli -path '*/_compiled/*.pyx')
 BENCHES   := $(patsubst tests/benchmarks/%.py,tests.benchmarks.%,$(filter-out %/__init__.py %/_%,$(wildcard tests/benchmarks/*.py)))
 
-.PHONY: all install samples gallery figures test lint bench fuzz torture manual dist check-dist check-pythons check-roots clean needs quick
+.PHONY: all install samples gallery figures test lint bench fuzz torture manual dist check-dist check-pythons check-roots check-resolver cluster clean needs quick
 .DELETE_ON_ERROR:
 
 all: samples
@@ -32,7 +34,7 @@ all: samples
 install: $(INSTALLED)
 
 # What only the system's package manager can bring (.ci/packages): first of all, installed in one go if permitted, else named.
-NEEDS := $(if $(filter test quick bench,$(MAKECMDGOALS)),test,$(if $(filter install lint manual dist check-dist fuzz torture,$(MAKECMDGOALS)),install,make))
+NEEDS := $(if $(filter test quick bench,$(MAKECMDGOALS)),test,$(if $(filter install lint manual dist check-dist fuzz torture cluster,$(MAKECMDGOALS)),install,make))
 needs:
 	@PYTHON="$(PYTHON)" .ci/need $(NEEDS)
 
@@ -89,13 +91,21 @@ dist: $(INSTALLED)
 check-dist: needs
 	.ci/check-dist $(PYTHON)
 
-# The nine samples and every texture under each CPython that is to be had, byte for byte: some five minutes each.
+# The nine samples, every texture and every style under each CPython that is to be had, byte for byte: some five minutes each.
 check-pythons:
 	.ci/check-pythons $(PYTHONS)
 
 # `make` and `make test` in new roots of Debian 12 and 13 that hold nothing but python3, gcc, make and git: an hour, as root.
 check-roots:
 	.ci/check-roots $(ROOTS)
+
+# Every dependency by wheel or source for CPython 3.11 to 3.14, on Intel and ARM, glibc and musl: some minutes, most of them waiting.
+check-resolver:
+	.ci/check-resolver
+
+# The Snakefile on a real Slurm, which is started for it and stopped again: as root, with Debian's slurm-wlm and munge.
+cluster: $(INSTALLED)
+	PATH="$(BIN):$$PATH" .ci/cluster
 
 clean:
 	rm -rf $(VENV) build dist *.egg-info .pytest_cache .hypothesis .mypy_cache .ruff_cache
