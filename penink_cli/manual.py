@@ -1,10 +1,11 @@
-"""What follows from the registries and the help texts: man pages, shell completion, the README's table of filters.
+"""What follows from registries and help texts: man pages, shell completion, the README's table, packed textures.
 
 ``python -m penink_cli.manual`` writes them, the first two into penink_cli/share, whence they are installed.
 """
 
 from __future__ import annotations
 
+import gzip
 import inspect
 import os
 import re
@@ -168,6 +169,17 @@ def main() -> None:
     if len(sys.argv) == 1:
         for target, text in derived():
             target.write_text(text, encoding="utf-8")
+        pack_tiles()
+
+
+def pack_tiles() -> None:
+    """Make and pack the textures that are in no file yet; one that is made anew is removed first."""
+    from penink_cli.options import textures
+
+    for name in textures.shipped():
+        tile = Path(__file__).parent / "textures" / "tiles" / (name + textures.ENDING)
+        if not tile.exists():
+            tile.write_bytes(gzip.compress(textures.made(name), mtime=0))
 
 
 if __name__ == "__main__":

@@ -11,7 +11,7 @@ from penink_cli.ground.errors import ParameterError
 from penink_cli.ground.streams import reading, source_name, writing
 from penink_cli.options.common import LENGTH, DeviceDpi, Finite, Length, output_options, warn
 from penink_cli.options.textures import TEXTURE, find_texture, shipped
-from penink_cli.textures.kinds import KINDS
+from penink_cli.textures.registry import KINDS
 
 if TYPE_CHECKING:
     from penink_cli.ground.model import Texture
@@ -92,7 +92,7 @@ def show(name: str, as_file: bool, device_dpi: float | None, output: str | None,
 @texture.command()
 @click.argument("kind", type=click.Choice(sorted(KINDS)))
 @click.option("--angle", type=Finite(-360, 360), metavar="DEGREES", help="Direction, clockwise from the right.")
-@click.option("--spacing", type=Length(zero=True), default=0.0, help="Lines of one layer are nowhere closer.")
+@click.option("--spacing", type=Length(zero=True), help="Lines of one layer are nowhere closer.")
 @click.option("--pen", type=LENGTH, help="Width of the strokes.")
 @click.option("--finest", type=LENGTH, help="Of an engraving: least width of a line.")
 @click.option(
@@ -109,16 +109,16 @@ def show(name: str, as_file: bool, device_dpi: float | None, output: str | None,
     help="Of contour-rings: their centre, in parts of the picture's width and height.",
 )
 @click.option("--layers", type=click.IntRange(1, 4), metavar="1…4", help="Directions of hatching.")
-@click.option("--seed", type=click.IntRange(0, 2**63 - 1), default=0, show_default=True, metavar="N")
+@click.option("--seed", type=click.IntRange(0, 2**63 - 1), metavar="N", help="Another hand.")
 @click.option("--name", help="The texture's name.  [default: KIND]")
 @output_options
 def make(
     kind: str,
     angle: float | None,
-    spacing: float,
+    spacing: float | None,
     pen: float | None,
     layers: int | None,
-    seed: int,
+    seed: int | None,
     finest: float | None,
     lines: int | None,
     centre: tuple[float, float] | None,
@@ -128,7 +128,8 @@ def make(
 ) -> None:
     """Make a texture of a KIND, each of whose prefixes is evenly spaced.
 
-    Takes some seconds. Without options it is the one that comes with the program.
+    Takes some seconds. Without options it is the one that comes with the program. An option that means nothing to
+    the KIND is refused.
     """
     from penink_cli.textures.make import make as make_texture
 

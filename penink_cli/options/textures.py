@@ -13,6 +13,7 @@ import click
 from penink_cli.ground.errors import ParameterError, printable
 from penink_cli.ground.streams import reading, source_name
 from penink_cli.options.common import NameOrFile, is_file
+from penink_cli.textures.registry import KINDS
 
 if TYPE_CHECKING:
     from penink_cli.ground.model import Texture
@@ -22,11 +23,9 @@ F = TypeVar("F", bound=Callable[..., Any])
 ENDING = ".texture.json.gz"
 
 
-
 def shipped() -> list[str]:
     """Names of the textures that come with the program."""
-    tiles = resources.files("penink_cli.textures") / "tiles"
-    return sorted(f.name.removesuffix(ENDING) for f in tiles.iterdir() if f.name.endswith(ENDING))
+    return sorted(KINDS)
 
 
 TEXTURE = NameOrFile(shipped)
@@ -53,4 +52,16 @@ def find_texture(name: str) -> Texture:
     if name not in shipped():
         raise ParameterError(f"no texture {printable(name, 60)}; known are {', '.join(shipped())}, or give a file")
     tile = resources.files("penink_cli.textures") / "tiles" / (name + ENDING)
-    return texture_format.read(io.BytesIO(gzip.decompress(tile.read_bytes())), tile.name)
+    if tile.is_file():
+        return texture_format.read(io.BytesIO(gzip.decompress(tile.read_bytes())), tile.name)
+    return texture_format.read(io.BytesIO(made(name)), name)  # not packed yet: some seconds
+
+
+def made(name: str) -> bytes:
+    """The file of the texture of that kind, made anew."""
+    from penink_cli.formats import texture as texture_format
+    from penink_cli.textures.make import make
+
+    out = io.BytesIO()
+    texture_format.write(out, make(name))
+    return out.getvalue()

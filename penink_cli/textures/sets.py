@@ -6,51 +6,20 @@ are drawn from the root, blades of grass from the tip.
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from penink_cli.ground.model import Floats, Strokes, Texture
 
-#: Control points x, y of chains of cubics, points.
-EXAMPLES: dict[str, tuple[tuple[float, ...], ...]] = {
-    "fur": (
-        (0, 0, 7, 0.2, 14, 1.0, 21, 2.4),
-        (0, 0, 5, 0.9, 10, 1.2, 15, 0.7),
-        (0, 0, 8, -0.5, 17, 0.4, 25, 2.5),
-        (0, 0, 6, 1.3, 12, 1.7, 18, 0.9),
-        (0, 0, 4, 0.3, 8, 0.6, 12, 1.5),
-        (0, 0, 5, -0.3, 11, 0.2, 16, -0.4),
-    ),
-    "hair": (
-        (0, 0, 12, 0.6, 26, 1.7, 38, 3.2),
-        (0, 0, 10, -0.9, 20, -0.6, 31, 0.8),
-        (0, 0, 10, 0.8, 19, 1.3, 27, 0.6, 35, -0.1, 42, -0.4, 50, 0.9),
-        (0, 0, 9, 0.2, 17, 0.6, 25, 1.6),
-        (0, 0, 8, -0.4, 17, -1.2, 24, -0.8, 31, -0.4, 36, 0.6, 42, 0.4),
-    ),
-    "grass-blades": (
-        (0, 0, 3, 2.2, 10, 3.6, 24, 3.9),
-        (0, 0, 5, 1.6, 12, 2.3, 19, 2.2),
-        (0, 0, 2, 3.4, 11, 5.2, 29, 5.4),
-        (0, 0, 6, 0.7, 11, 0.9, 16, 0.6),
-        (0, 0, 7, 1.0, 16, 1.2, 27, 0.2),
-    ),
-    "barb": (
-        (0, 0, 3, 0, 7, 0.6, 10, 2.5),
-        (0, 0, 2.6, 0.4, 5.4, 1.2, 8.5, 2.9),
-        (0, 0, 4, 0.3, 8.5, 0.4, 12, 1.7),
-        (0, 0, 3, -0.2, 6.5, 0.1, 9.5, 1.4),
-    ),
-}
-PEN_PT = {"fur": 0.4, "hair": 0.35, "grass-blades": 0.4, "barb": 0.4}
 SHORTEST_PT = 1.0  # of what leads anywhere
 
 
-def make_set(kind: str, pen_pt: float | None = None) -> Texture:
-    """One of the sets that come with the program; pen_pt: another pen than its own."""
-    examples = [np.array(points, np.float64).reshape(-1, 2) for points in EXAMPLES[kind]]
-    return _texture(kind, examples, [pen_pt or PEN_PT[kind]] * len(examples))
+def oriented(name: str, examples: Iterable[Sequence[float]], pen_pt: float) -> Texture:
+    """A set of examples, each x, y of the control points of a chain of cubics, in points."""
+    chains = [np.array(points, np.float64).reshape(-1, 2) for points in examples]
+    return _texture(name, chains, [pen_pt] * len(chains))
 
 
 def as_set(drawing: Texture) -> tuple[Texture, int]:

@@ -13,10 +13,10 @@ from penink_cli.blasting.stroke_set import smooth
 from penink_cli.ground.errors import ParameterError
 from penink_cli.ground.model import Strokes
 from penink_cli.options.textures import find_texture
-from penink_cli.textures.kinds import SETS
 from penink_cli.textures.sets import as_set
 from tests.blasting import measures
 from tests.blasting.test_form import circles, field, off_angle, waves
+from tests.textures.shipped import SETS
 
 
 @pytest.mark.parametrize("name", SETS)

@@ -1,5 +1,6 @@
 """Textures: those shipped, those made, those imported, and what their file may not hold."""
 
+import inspect
 import io
 import json
 from importlib import resources
@@ -14,8 +15,11 @@ from penink_cli.blasting.tile import thresholds
 from penink_cli.formats import svg_texture, texture
 from penink_cli.ground.errors import FormatError, ParameterError
 from penink_cli.options.textures import find_texture, shipped
-from penink_cli.textures.kinds import KINDS, SETS
-from penink_cli.textures.make import MAKERS, make
+from penink_cli.textures import kinds
+from penink_cli.textures.make import make, maker
+from penink_cli.textures.normal import normal
+from penink_cli.textures.registry import KINDS
+from tests.textures.shipped import SETS, TILES
 
 GOOD = {
     "format": "penink-texture", "version": 1, "name": "dashes", "width": 144, "height": 144, "whole": True,
@@ -36,10 +40,12 @@ def written(found) -> bytes:
 
 
 def test_every_kind_is_shipped():
-    assert sorted(KINDS) == sorted([*MAKERS, *SETS]) == shipped()
+    assert sorted(KINDS) == shipped()
+    modules = {f.name.removesuffix(".py").replace("_", "-") for f in resources.files(kinds).iterdir()}
+    assert set(KINDS) == {name for name in modules if not name.startswith("-")}
 
 
-@pytest.mark.parametrize("name", sorted(set(KINDS) - set(SETS)))
+@pytest.mark.parametrize("name", TILES)
 def test_a_shipped_texture_reaches_black_and_fills_up_steadily(name):
     found = find_texture(name)
     assert reachable(found, 72 / 600)[1] >= 0.975
@@ -47,7 +53,7 @@ def test_a_shipped_texture_reaches_black_and_fills_up_steadily(name):
     assert enters[0] == 0 and (np.diff(enters) >= 0).all() and enters[-1] > 0.95
 
 
-@pytest.mark.parametrize("name", sorted(set(KINDS) - {"brick", *SETS}))
+@pytest.mark.parametrize("name", sorted(set(TILES) - {"brick"}))
 @pytest.mark.parametrize("part", [0.1, 0.4])
 def test_every_prefix_is_evenly_spread(name, part):
     """The ink of a prefix in 9 parts of the tile differs less than that of strokes thrown at random."""
@@ -61,6 +67,26 @@ def test_every_prefix_is_evenly_spread(name, part):
 @pytest.mark.parametrize("name", ["stipple", "brick", *SETS])
 def test_a_shipped_texture_is_what_make_makes(name):
     assert written(make(name)) == written(find_texture(name))
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_an_option_that_means_nothing_is_refused(kind, penink):
+    known = inspect.signature(maker(kind)).parameters
+    options = {"angle": "9", "spacing": "2", "finest": "0.2", "lines": "9", "centre": "1 2", "layers": "1", "seed": "1"}
+    for name, value in options.items():
+        if name in known and known[name].kind == inspect.Parameter.KEYWORD_ONLY:
+            continue
+        with pytest.raises(ParameterError, match=f"{kind} takes no {name}, but .*pen"):
+            make(kind, **{name: value})
+    if "centre" not in known:
+        done = penink("texture", "make", kind, "--centre", "1", "2")
+        assert (done.returncode, done.stdout, done.stderr.count(b"\n")) == (1, b"", 1)
+
+
+def test_deviates_are_numpys_but_for_the_last_bits():
+    ours, theirs = np.random.default_rng(3), np.random.default_rng(3)
+    assert np.allclose(normal(ours, 2.0, (300, 100)), theirs.normal(0, 2, (300, 100)), rtol=0, atol=1e-12)
+    assert ours.random() == theirs.random()
 
 
 def test_bricks_are_hatched_evenly_from_side_to_side():

@@ -1,4 +1,8 @@
-"""The kinds of texture that can be made, all of which come with the program."""
+"""The kinds of texture that can be made, all of which come with the program.
+
+A line here and its module in `kinds/`, `grass-blades` in grass_blades.py, make a kind. `make manual` packs its tile
+into `tiles/`; until then it is made whenever it is asked for.
+"""
 
 #: Name -> what it is like.
 KINDS = {
@@ -20,5 +24,3 @@ KINDS = {
     "stipple": "dots",
     "wood": "an engraving's lines that waver, as those cut in wood",
 }
-#: Those that are no tile but a set of examples, laid along a field of directions.
-SETS = ("barb", "fur", "grass-blades", "hair")

@@ -1,0 +1,91 @@
+"""Filling a tile with strokes of which every prefix is evenly spaced, until it is as good as black."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from penink_cli.ground import exact
+from penink_cli.ground.angles import direction
+from penink_cli.ground.device import DOT, MEAN
+from penink_cli.ground.model import Floats, HatchLayer, Strokes, Texture
+from penink_cli.textures.even import Torus
+
+TILE_PT = 144.0
+#: What a full tile covers, at the least.
+FULL = 0.978
+#: A stroke paints a little more than its pen is wide: what a device of 600 dpi adds.
+GAIN_PT, DOT_GAIN_PT = MEAN * 72 / 600, DOT * 72 / 600
+
+Maker = Callable[[np.random.Generator, int], Floats]
+
+
+def bowed_line(centre: Floats, angle: Floats, length: Floats, bow: Floats) -> Floats:
+    """Cubics (n, 4, 2): straight strokes about centre (n, 2), their middle pushed sideways by bow."""
+    along = np.array([direction(a) for a in angle.tolist()])
+    half = along * length[:, None] / 2
+    across = np.column_stack([-along[:, 1], along[:, 0]]) * bow[:, None]
+    ends = np.stack([centre - half, centre - half / 3, centre + half / 3, centre + half], axis=1)
+    return ends + np.stack([-across / 3, across, across, -across / 3], axis=1)
+
+
+def fill(
+    torus: Torus, candidates: Maker, pen: float, until: float, reached: float, choices: int, rng: np.random.Generator
+) -> list[Floats]:
+    """Strokes (each (3k + 1, 2)), the emptiest of so many choices each time, from coverage reached to until.
+
+    Coverage is counted on the grid of the torus, a stroke leaving bare of each cell it runs through what is not its
+    share of it: right for strokes that lie as they please, and a little pessimistic for these, which keep apart.
+    """
+    bare = np.full((torus.rows, torus.columns), 1.0 - reached)
+    cell = float(1.0 / (torus.scale[0] * torus.scale[1]))
+    mean = 1.0 - reached
+    out = []
+    while mean > 1.0 - until:
+        strokes = candidates(rng, choices)
+        samples = along_curve(strokes)
+        best = torus.emptiest(samples)
+        length = max(polygon_length(strokes[best]), pen * 0.8)
+        torus.add(samples[best], length)
+        rows, columns = torus.cells(samples[best])
+        keep = exact.exp(-length / len(rows) * pen / cell)
+        for r, c in zip(rows.tolist(), columns.tolist(), strict=True):
+            was = bare[r, c]
+            bare[r, c] = was * keep
+            mean -= float(was - was * keep) / bare.size
+        out.append(strokes[best])
+    return out
+
+
+def along_curve(strokes: Floats) -> Floats:
+    """Samples (n, p, 2) of chains (n, 3k + 1, 2), about one a point of length; a dot is its own sample."""
+    k = (strokes.shape[1] - 1) // 3
+    if k == 0:
+        return strokes
+    per = max(2, round(polygon_length(strokes[0]) / k))
+    t = (np.arange(per) / per)[:, None]
+    u = 1 - t
+    parts = []
+    for j in range(k):
+        p = strokes[:, 3 * j : 3 * j + 4, None]
+        parts.append(u * u * u * p[:, 0] + 3 * u * u * t * p[:, 1] + 3 * u * t * t * p[:, 2] + t * t * t * p[:, 3])
+    return np.concatenate(parts, axis=1)
+
+
+def polygon_length(stroke: Floats) -> float:
+    """Length of a control polygon (p, 2)."""
+    legs = np.diff(stroke, axis=0)
+    return float(np.sqrt((legs * legs).sum(axis=1)).sum())
+
+
+def tile(
+    name: str, strokes: list[Floats], widths: list[float], width: float, height: float, seed: int, whole: bool = False,
+    layers: tuple[HatchLayer, ...] = (),
+) -> Texture:  # fmt: skip
+    """A texture of strokes in order of priority, in hundredths of a point."""
+    first = np.zeros(len(strokes) + 1, np.int64)
+    np.cumsum([len(s) for s in strokes], out=first[1:])
+    points: Floats = np.round(np.concatenate(strokes), 2).astype(np.float64)
+    laid = Strokes(width, height, points, first, np.array(widths), texture=name, seed=seed)
+    return Texture(name, laid, np.arange(len(strokes), dtype=np.float64), whole, layers)

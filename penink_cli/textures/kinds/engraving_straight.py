@@ -1,0 +1,10 @@
+"""An engraving's lines, straight."""
+
+from __future__ import annotations
+
+from functools import partial
+
+from penink_cli.ground.model import Engraving
+from penink_cli.textures.engraved import engraved
+
+make = partial(engraved, "engraving-straight", Engraving(along=False))

@@ -1,0 +1,26 @@
+"""Dots, drawn whole or not at all."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from penink_cli.ground.model import Floats, Texture
+from penink_cli.textures.even import Torus
+from penink_cli.textures.filling import DOT_GAIN_PT, FULL, fill, tile
+
+
+def make(*, pen: float = 1.0, seed: int = 0) -> Texture:
+    """Dots."""
+    size = 72.0
+    torus = Torus(size, size, 0.5, grid=0.75)
+    rng = np.random.default_rng(seed)
+
+    def dots(rng: np.random.Generator, n: int) -> Floats:
+        return rng.uniform(0, size, (n, 1, 2))
+
+    # the area of a dot as the length of line it stands for
+    area = math.pi / 4 * (pen + DOT_GAIN_PT) ** 2
+    strokes = fill(torus, dots, area / (pen * 0.8), FULL, 0.0, 60, rng)
+    return tile("stipple", strokes, [pen] * len(strokes), size, size, seed, whole=True)
