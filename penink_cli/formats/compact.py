@@ -1,19 +1,17 @@
-"""Samples, edges and texts in as few bytes as they can be: the members of a packed illustration.
+"""Samples, directions and texts in as few bytes as they can be: members of a packed illustration.
 
 Each begins with four bytes that say what it is, then whole numbers (seven bits a byte, low ones
 first, the eighth set on all but the last), then one stretch of the adaptive code of `_compact`:
 
 =========  =========================================  ==========================================
 ``PIs1``   width, height, maxval                      samples, row by row, by their neighbours
-``PIe1``   W, H, grid columns, grid rows, number of   chains: where each starts, then one step
-           edges, 1 where strengths follow else 0     after the other
+``PIs2``   width, height, maxval                      the same, by neighbours that no edge hides
 ``PId1``   columns, rows                              directions: angles row by row, then confidence
 ``PIt1``   number of bytes                            a text, byte by byte
 =========  =========================================  ==========================================
 
-Vertices lie on a grid of columns × rows cells that spans the edge list's frame W × H: the point (a, b) is
-x = a·W / columns, y = b·H / rows. The grid has `GRID` points to the sample spacing, which costs at most
-0.1 dB against exact edges. Strengths are kept in sixteenths.
+`compact_edges` and `compact_lines` have two more. Samples beside edges are read with the same edges that they were
+written with: which neighbours tell something of a sample is not said again.
 
 Directions are kept as ANGLES angles of a half turn, 3.75° apart, and as confidence in sevenths, one for 4 × 4 samples.
 """
@@ -26,16 +24,13 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from penink_cli.formats import edge_list
+from penink_cli.formats._compiled import cuts as _cuts
 from penink_cli.formats._compiled.compact import Coder
-from penink_cli.geometry.trails import trails
 from penink_cli.ground.errors import FormatError, LimitError
 from penink_cli.ground.model import Directions, EdgeList, Floats, GreyImage, Ints
 
-SAMPLES, EDGES, DIRECTIONS, TEXT = b"PIs1", b"PIe1", b"PId1", b"PIt1"
+SAMPLES, SAMPLES_BESIDE, DIRECTIONS, TEXT = b"PIs1", b"PIs2", b"PId1", b"PIt1"
 
-GRID = 16  # points of the edges' grid to the sample spacing
-STRENGTHS = 16  # steps of strength
 ANGLES = 48  # of a half turn: 0°, 45° and 90° are among them
 SURE = 7  # the highest level of confidence
 BLOCK = 4  # samples along a side that share one
@@ -47,10 +42,11 @@ MAX_SAMPLES = 1 << 24
 MAX_TEXT = 1 << 20
 MAX_CODE = 1 << 20
 
-# Kinds of numbers; each has statistics of its own.
-_CHAIN, _DOWN, _ALONG, _STEP, _BACK, _MAIN, _ASIDE, _STRENGTH, _TURN = range(9)
-# What a step along a chain leads to.
-_NEW, _END, _START, _OLD = range(4)
+_SPACING = 16  # of samples, in the whole numbers by which it is told what an edge hides
+# Edges that pass more cells than so many a sample, and some, hide nothing: telling what they do would take too long.
+_PASSED, _SOME = 4, 1 << 16
+
+_TURN = 8  # the kind of number that a turn is: each kind has statistics of its own
 
 
 def requantised(image: GreyImage, levels: int) -> GreyImage:
@@ -69,27 +65,47 @@ def _grey(values: npt.NDArray[Any], maxval: int) -> GreyImage:
 # ------------------------------------------------------------------------------ samples
 
 
-def samples_bytes(image: GreyImage) -> bytes:
-    """Samples, without loss. Raises LimitError."""
+def samples_bytes(image: GreyImage, edges: EdgeList | None = None) -> bytes:
+    """Samples, without loss, beside edges in the same frame. Raises LimitError."""
     h, w = image.values.shape
     coder = Coder()
-    coder.samples(np.ascontiguousarray(image.values, np.int32), image.maxval)
-    return SAMPLES + _numbers(w, h, image.maxval) + _finished(coder)
+    beside = edges is not None and len(edges.edges) > 0
+    coder.samples(np.ascontiguousarray(image.values, np.int32), image.maxval, _hidden(edges, w, h) if beside else None)
+    return (SAMPLES_BESIDE if beside else SAMPLES) + _numbers(w, h, image.maxval) + _finished(coder)
 
 
-def samples_from(data: bytes, max_pixels: int) -> GreyImage:
-    """What `samples_bytes` wrote. Raises FormatError, and LimitError before anything large is allocated."""
-    (width, height, maxval), rest = _header(data, SAMPLES, 3)
+def samples_from(data: bytes, max_pixels: int, edges: EdgeList | None = None) -> GreyImage:
+    """What `samples_bytes` wrote, given the same edges.
+
+    Raises FormatError, and LimitError before anything large is allocated.
+    """
+    beside = data[:4] == SAMPLES_BESIDE
+    (width, height, maxval), rest = _header(data, SAMPLES_BESIDE if beside else SAMPLES, 3)
     if not (width and height and 1 <= maxval <= 65535):
         raise FormatError(f"samples of {width} x {height} with maxval {maxval}")
     limit = min(max_pixels, MAX_SAMPLES)
     if width * height > limit:
         raise LimitError(f"{width} x {height} samples; {limit} are allowed in all")
+    if beside and edges is None:
+        raise FormatError("samples beside edges, and the layer has none")
     values = np.zeros((height, width), np.int32)
     coder = Coder(rest)
-    coder.samples(values, maxval)
+    coder.samples(values, maxval, _hidden(edges, width, height) if beside else None)
     _check_end(coder)
     return _grey(values, maxval)
+
+
+def _hidden(edges: EdgeList | None, width: int, height: int) -> npt.NDArray[np.uint8]:
+    """(height, width) bits of the neighbours that edges hide from a sample."""
+    cuts = np.zeros((height, width), np.uint8)
+    if edges is not None and len(edges.edges):
+        scale = (_SPACING * width / edges.width, _SPACING * height / edges.height)
+        points = np.rint(edges.vertices * scale).astype(np.int64)
+        a, b = points[edges.edges[:, 0]], points[edges.edges[:, 1]]
+        passed = int((np.abs(b - a) // _SPACING + 4).sum())
+        if passed <= _PASSED * width * height + _SOME:
+            _cuts.mark(np.column_stack([a, b]), cuts)
+    return cuts
 
 
 # -------------------------------------------------------------------------------- texts
@@ -218,157 +234,6 @@ def _size(value: int) -> int:
 def _within_3(value: int) -> int:
     """0 … 6."""
     return max(-3, min(3, value)) + 3
-
-
-# -------------------------------------------------------------------------------- edges
-
-
-def edges_bytes(edges: EdgeList, columns: int, rows: int) -> bytes:
-    """Edges whose vertices lie on a grid of columns × rows cells, in an order that depends on nothing but them.
-
-    Strengths are rounded to sixteenths. Raises LimitError.
-    """
-    grid = np.rint(edges.vertices * (columns / edges.width, rows / edges.height)).astype(np.int64)
-    strong = edges.strength is not None
-    head = _numbers(edges.width, edges.height, columns, rows, len(edges.edges), int(strong))
-    coder = Coder()
-    if len(edges.edges):
-        steps = np.zeros(len(edges.edges), np.int64)
-        if edges.strength is not None:
-            steps = np.floor(edges.strength * STRENGTHS + 0.5).astype(np.int64)
-        _Chains(coder, strong).write(grid, edges.edges, steps)
-    return EDGES + head + _finished(coder)
-
-
-def edges_from(data: bytes) -> EdgeList:
-    """What `edges_bytes` wrote, each vertex and edge sound by itself (see `edge_list.check`)."""
-    (width, height, columns, rows, count, strong), rest = _header(data, EDGES, 6)
-    if not (1 <= width <= edge_list.MAX_SIDE and 1 <= height <= edge_list.MAX_SIDE):
-        raise FormatError(f"edges of a frame {width} x {height}")
-    if not (1 <= columns <= MAX_GRID and 1 <= rows <= MAX_GRID) or strong > 1:
-        raise FormatError(f"edges on a grid of {columns} x {rows}")
-    if count > 16 * len(rest) + 64:
-        raise FormatError(f"{count} edges in {len(rest)} bytes; truncated")
-    chains = _Chains(Coder(rest), bool(strong))
-    grid, ends, steps = chains.read(count, columns, rows)
-    vertices = np.array(grid, np.float64).reshape(-1, 2) * (width, height) / (columns, rows)
-    strength = np.array(steps, np.float64) / STRENGTHS if strong else None
-    found = EdgeList(width, height, vertices, np.array(ends, np.int64).reshape(-1, 2), strength)
-    edge_list.check(found)
-    return found
-
-
-class _Chains:
-    """Edges as chains of steps from grid point to grid point.
-
-    A chain starts at a new point, told by its offset from the start before it, or at an old one. Each
-    step is expected to go on in the direction of the one before: its longer coordinate is
-    written first, then how far the other is from where that direction would have it.
-    """
-
-    def __init__(self, coder: Coder, strong: bool):
-        self.coder, self.strong = coder, strong
-
-    def _step(self, dx: int, dy: int, before: tuple[int, int]) -> tuple[int, int]:
-        """One step, given (to write) or not (to read), and the step before it, (0, 0) at the start of a chain."""
-        bx, by = before
-        swap = abs(by) > abs(bx)
-        if swap:
-            dx, dy, bx, by = dy, dx, by, bx
-        turned = -1 if bx < 0 else 1
-        size = min(255, abs(bx).bit_length() * 16 + min(15, 16 * abs(by) // abs(bx) if bx else 0))
-        dx = turned * self.coder.number(turned * dx, _MAIN, size >> 4, size)
-        guess = (2 * dx * by + abs(bx)) // (2 * abs(bx)) * turned if bx else 0
-        dy = guess + self.coder.number(dy - guess, _ASIDE, min(255, abs(dx).bit_length() * 16 + (size >> 4)), size)
-        return (dy, dx) if swap else (dx, dy)
-
-    def write(self, grid: Ints, ends: Ints, steps: Ints) -> None:
-        coder = self.coder
-        seen: dict[int, int] = {}
-        points = grid.tolist()
-        last = (0, 0)
-        for chain, along in trails(grid, ends):
-            strengths = steps[along].tolist()
-            x, y = points[chain[0]]
-            if chain[0] in seen:
-                coder.number(len(seen) - seen[chain[0]], _CHAIN)
-            else:
-                coder.number(0, _CHAIN)
-                coder.number(y - last[1], _DOWN)
-                coder.number(x - last[0], _ALONG, min(255, abs(y - last[1])))
-                last = (x, y)
-                seen[chain[0]] = len(seen)
-            before, kind, strength = (0, 0), _NEW, 0
-            for i, vertex in enumerate(chain[1:]):
-                if vertex in seen:
-                    now = _START if vertex == chain[0] else _OLD
-                    coder.number(now, _STEP, kind, min(i, 15))
-                    if now == _OLD:
-                        coder.number(len(seen) - seen[vertex], _BACK)
-                else:
-                    now = _NEW
-                    coder.number(now, _STEP, kind, min(i, 15))
-                    nx, ny = points[vertex]
-                    before = self._step(nx - x, ny - y, before)
-                    seen[vertex] = len(seen)
-                x, y = points[vertex]
-                kind = now
-                if self.strong:
-                    coder.number(strengths[i] - strength, _STRENGTH, strength, int(i > 0))
-                    strength = strengths[i]
-            coder.number(_END, _STEP, kind, min(len(chain) - 1, 15))
-
-    def read(
-        self, count: int, columns: int, rows: int
-    ) -> tuple[list[tuple[int, int]], list[tuple[int, int]], list[int]]:
-        coder = self.coder
-        points: list[tuple[int, int]] = []
-        ends: list[tuple[int, int]] = []
-        steps: list[int] = []
-        last = (0, 0)
-
-        def new(x: int, y: int) -> int:
-            if not (0 <= x <= columns and 0 <= y <= rows):
-                raise FormatError(f"vertex {len(points)} at {x}, {y} is off the grid of {columns} x {rows}")
-            points.append((x, y))
-            return len(points) - 1
-
-        def old(back: int) -> int:
-            if not 0 < back <= len(points):
-                raise FormatError(f"a step back over {back} of {len(points)} vertices")
-            return len(points) - back
-
-        while len(ends) < count and not coder.overrun:
-            back = coder.number(0, _CHAIN)
-            if back:
-                at = old(back)
-            else:
-                y = last[1] + coder.number(0, _DOWN)
-                last = (last[0] + coder.number(0, _ALONG, min(255, abs(y - last[1]))), y)
-                at = new(*last)
-            start, before, kind, strength, i = at, (0, 0), _NEW, 0, 0
-            while not coder.overrun:
-                now = coder.number(0, _STEP, kind, min(i, 15))
-                if now == _END:
-                    break
-                if len(ends) == count:
-                    raise FormatError(f"more than the {count} edges announced")
-                if now == _NEW:
-                    before = self._step(0, 0, before)
-                    to = new(points[at][0] + before[0], points[at][1] + before[1])
-                elif now == _START:
-                    to = start
-                else:
-                    to = old(coder.number(0, _BACK))
-                ends.append((at, to))
-                at, kind, i = to, now, i + 1
-                if self.strong:
-                    strength += coder.number(0, _STRENGTH, strength, int(i > 1))
-                    if not 0 <= strength <= STRENGTHS:
-                        raise FormatError(f"edge {len(ends) - 1}: strength {strength}; 0 to {STRENGTHS} is allowed")
-                    steps.append(strength)
-        _check_end(coder)
-        return points, ends, steps
 
 
 # ------------------------------------------------------------------------------ headers

@@ -18,7 +18,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
-from penink_cli.formats import compact, compact_lines, directions, edge_list, pgm, strict_json
+from penink_cli.formats import compact, compact_edges, compact_lines, directions, edge_list, pgm, strict_json
 from penink_cli.formats import lines as lines_format
 from penink_cli.formats import texture as texture_format
 from penink_cli.ground.errors import FormatError, LimitError, PeninkError
@@ -40,6 +40,7 @@ MAX_BYTES = 1 << 20  # of the manifest
 MAX_LAYERS = 64
 MAX_SIZE = 144_000.0  # points
 MAX_PEN = 72.0
+LEVELS = 24  # of grey, unless a layer says another number: what ink shows of more is nothing
 RULES = ("best", "strict", "threshold", "engrave")
 
 _SHIPPED = re.compile(r"[a-z0-9_-]{1,60}", re.ASCII)
@@ -104,15 +105,18 @@ def _layer(item: dict[str, Any], place: str, fetch: Fetch, shipped: Shipped, max
     rule = strict_json.text(item.get("rule", "best"), f"{place}: rule")
     if rule not in RULES:
         raise FormatError(f"{place}: rule {strict_json.quoted(rule)}; known are {', '.join(RULES)}")
-    samples = member("samples", lambda data: _samples(data, max_pixels))
+    edges = member("edges", lambda data: _edges(data, max_pixels)) if "edges" in item else None
+    samples, compactly = member("samples", lambda data: _samples(data, max_pixels, edges))
     field = member("directions", lambda data: _directions(data, samples, max_pixels)) if "directions" in item else None
     return Layer(
         samples=samples,
-        edges=member("edges", lambda data: _edges(data, max_pixels)) if "edges" in item else None,
+        edges=edges,
         texture=texture,
         texture_name=None if own else texture_name,
         name=strict_json.text(item["name"], f"{place}: name") if "name" in item else None,
-        levels=strict_json.whole(item.get("levels", 64), f"{place}: levels", 2, 65536),
+        levels=strict_json.whole(
+            item.get("levels", samples.maxval + 1 if compactly else LEVELS), f"{place}: levels", 2, 65536
+        ),
         pen_pt=_length(item, "pen", MAX_PEN, place) if "pen" in item else None,
         gamma=number("gamma", 1.0, 0.05, 20.0),
         rule=rule,
@@ -166,15 +170,16 @@ def _length(item: dict[str, Any], name: str, most: float, place: str = "") -> fl
     return strict_json.number(strict_json.member(item, name, place), what, 0.01, most)
 
 
-def _samples(data: bytes, max_pixels: int) -> GreyImage:
-    if data.startswith(compact.SAMPLES):
-        return compact.samples_from(data, max_pixels)
-    return pgm.read(io.BytesIO(data), "", max_pixels)
+def _samples(data: bytes, max_pixels: int, edges: EdgeList | None) -> tuple[GreyImage, bool]:
+    """Samples, and whether they come in the compact form, which has as many levels as they are kept at."""
+    if data.startswith((compact.SAMPLES, compact.SAMPLES_BESIDE)):
+        return compact.samples_from(data, max_pixels, edges), True
+    return pgm.read(io.BytesIO(data), "", max_pixels), False
 
 
 def _edges(data: bytes, max_pixels: int) -> EdgeList:
-    if data.startswith(compact.EDGES):
-        return compact.edges_from(data)
+    if data.startswith((compact_edges.EDGES, compact_edges.EDGES_1)):
+        return compact_edges.edges_from(data)
     return edge_list.read(io.BytesIO(data), "", max_pixels)
 
 
@@ -211,10 +216,10 @@ def members(illustration: Illustration) -> dict[str, bytes]:
         rows, columns = layer.samples.values.shape
         item: dict[str, Any] = {} if layer.name is None else {"name": layer.name}
         item["samples"] = f"{i}.samples"
-        files[item["samples"]] = compact.samples_bytes(layer.samples)
+        files[item["samples"]] = compact.samples_bytes(layer.samples, layer.edges)
         if layer.edges is not None:
             item["edges"] = f"{i}.edges"
-            files[item["edges"]] = compact.edges_bytes(layer.edges, compact.GRID * columns, compact.GRID * rows)
+            files[item["edges"]] = _edges_bytes(layer.edges, columns, rows)
         if layer.directions is not None:
             item["directions"] = f"{i}.directions"
             files[item["directions"]] = compact.directions_bytes(layer.directions)
@@ -229,7 +234,7 @@ def members(illustration: Illustration) -> dict[str, bytes]:
         elif layer.texture_name != "crosshatch":
             item["texture"] = layer.texture_name
         for name, value, default in (
-            ("levels", layer.levels, 64),
+            ("levels", layer.levels, layer.samples.maxval + 1),
             ("pen", layer.pen_pt, None),
             ("gamma", layer.gamma, 1.0),
             ("rule", layer.rule, "best"),
@@ -297,7 +302,7 @@ def rounded(illustration: Illustration) -> Illustration:
         rows, columns = layer.samples.values.shape
         edges, texture, outline, field = layer.edges, layer.texture, layer.outline, layer.directions
         if edges is not None:
-            edges = compact.edges_from(compact.edges_bytes(edges, compact.GRID * columns, compact.GRID * rows))
+            edges = compact_edges.edges_from(_edges_bytes(edges, columns, rows))
         if layer.texture_name is None:
             texture = _texture(_texture_bytes(texture))
         if field is not None:
@@ -308,14 +313,28 @@ def rounded(illustration: Illustration) -> Illustration:
             line = _line(_line_item(layer.line), "line")
         if outline is not None:
             outline = _outline(_outline_item(outline), "outline")
+        samples = compact.requantised(layer.samples, layer.levels)
         layers.append(
             replace(
-                layer, samples=compact.requantised(layer.samples, layer.levels), edges=edges, texture=texture,
-                pen_pt=_plain(layer.pen_pt), gamma=float(_plain(layer.gamma)), outline=outline,
-                directions=field, lines=lines, line=line,
+                layer,
+                samples=samples,
+                levels=samples.maxval + 1,
+                edges=edges,
+                texture=texture,
+                pen_pt=_plain(layer.pen_pt),
+                gamma=float(_plain(layer.gamma)),
+                outline=outline,
+                directions=field,
+                lines=lines,
+                line=line,
             )
         )
     return Illustration(_plain(illustration.width), _plain(illustration.height), tuple(layers))
+
+
+def _edges_bytes(edges: EdgeList, columns: int, rows: int) -> bytes:
+    points = compact_edges.on_grid(edges, columns, rows) or compact_edges.GRIDS[-1]
+    return compact_edges.edges_bytes(edges, points * columns, points * rows)
 
 
 def _texture_bytes(texture: Texture) -> bytes:

@@ -60,9 +60,7 @@ def _parse(text: bytes) -> Any:
     return drawing
 
 
-def _texture(
-    drawing: Any, name: str, pen_pt: float | None, whole: bool, report: Callable[[str], None]
-) -> Texture:
+def _texture(drawing: Any, name: str, pen_pt: float | None, whole: bool, report: Callable[[str], None]) -> Texture:
     import svgelements
 
     size = [_number(getattr(drawing, side, None)) for side in ("width", "height")]

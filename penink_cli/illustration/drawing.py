@@ -39,32 +39,6 @@ def enlarged(samples: GreyImage, edges: EdgeList | None, size: tuple[int, int], 
     return GreyImage(np.concatenate(list(rows)).astype(np.uint8), 255)
 
 
-def represented(
-    photo: GreyImage, threads: int | None, advance: Advance = lambda done: None
-) -> tuple[EdgeList, GreyImage, str]:
-    """A photograph's edges, and its samples on the smallest grid that serves, as the filters write them.
-
-    Also the option of `reduce` that gives these samples.
-    """
-    from penink_cli.arrangement import detection
-    from penink_cli.formats import edge_list
-    from penink_cli.reconstruction import extraction, grid, reduction
-
-    edges = edge_list.rounded(detection.detect_edges(photo.grey))
-    advance(1)
-    samples = GreyImage.from_grey(extraction.extract_samples(photo.grey, edges, None), 255)
-    advance(1)
-    try:
-        reduced = grid.choose_grid(samples.grey, edges, grid.MAX_ERROR, photo=photo.grey, threads=threads).samples
-        size = "--auto"
-    except ParameterError:  # no grid comes that near to a photo of noise or fine texture: half of it is enough to hatch
-        rows, columns = ((side + 1) // 2 for side in photo.values.shape)
-        reduced = reduction.reduce(samples.grey, edges, columns, rows, photo=photo.grey, fit="lsq", threads=threads)
-        size = f"--size {columns}x{rows}"
-    advance(1)
-    return edges, GreyImage.from_grey(reduced, 255), size
-
-
 def outlined(
     edges: EdgeList, width_pt: float, height_pt: float, choice: OutlineChoice, ink: Strokes | None = None,
     device_dpi: float | None = None,

@@ -332,7 +332,7 @@ def settled(illustration: Illustration) -> Illustration:
     """The illustration at the precision it is kept at: samples at their levels, edges on the grid, rounded numbers."""
     from dataclasses import replace
 
-    from penink_cli.formats import compact
+    from penink_cli.formats import compact_edges
     from penink_cli.formats.illustration import rounded
     from penink_cli.geometry.quantisation import quantise
 
@@ -341,7 +341,9 @@ def settled(illustration: Illustration) -> Illustration:
         edges = layer.edges
         if edges is not None:
             rows, columns = layer.samples.values.shape
-            edges = quantise(edges, compact.GRID * columns, compact.GRID * rows, compact.GRID)
+            if compact_edges.on_grid(edges, columns, rows) is None:
+                points = compact_edges.points_to_spacing(edges, columns, rows)
+                edges = quantise(edges, points * columns, points * rows, points)
         layers.append(replace(layer, edges=edges))
     return rounded(replace(illustration, layers=tuple(layers)))
 

@@ -17,8 +17,8 @@ from PIL import Image
 from penink_cli.arrangement import detection
 from penink_cli.blasting.blast import blast
 from penink_cli.formats import archive, edge_list, illustration
-from penink_cli.ground.model import EdgeList, GreyImage, Illustration, Layer
-from penink_cli.illustration.drawing import enlarged, joined
+from penink_cli.ground.model import EdgeList, GreyImage, Illustration, Layer, Strokes
+from penink_cli.illustration.drawing import enlarged
 from penink_cli.illustration.layering import layer_strokes
 from penink_cli.options.inputs import read_illustration, settled
 from penink_cli.options.textures import find_texture
@@ -86,7 +86,7 @@ def packed_size(photo: GreyImage, edges: EdgeList, columns: int, rows: int) -> i
 
 def storage() -> None:
     """Sizes against the paper's, with the worst of all photographs."""
-    print("whole *.penink file, kilobytes of 1000 bytes; 64 grey levels, edges with strengths on 1/16 sample")
+    print("whole *.penink file, kilobytes of 1000 bytes; edges with strengths")
     print("| as in the paper | grid | edges | paper KB | allowed object / frame | object, worst | frame, worst |")
     print("| --- | --- | --- | --- | --- | --- | --- |")
     for content, columns, rows, count, kilobytes, one, other in STORED:
@@ -133,7 +133,7 @@ def tone(folder: Path) -> None:
     print("| --- | --- | --- | --- | --- | --- |")
     for inches in (1, 4, 24):
         parts = layer_strokes(whole, 72.0 * inches, threads=2)
-        strokes = joined([part for layer in parts for part in layer])
+        strokes = Strokes.joined([part for layer in parts for part in layer])
         rms, bias, worst = measures.tone_figures(strokes, photo.tone)
         low, middle, high = np.quantile(parts[-1][0].widths, (0.1, 0.5, 0.9))
         print(

@@ -17,7 +17,7 @@ from unittest import mock
 import numpy as np
 
 from penink_cli.arrangement import detection
-from penink_cli.formats import compact
+from penink_cli.formats import compact, compact_edges
 from penink_cli.geometry.trails import trails
 from penink_cli.ground.model import GreyImage
 from penink_cli.reconstruction import lanes
@@ -95,8 +95,8 @@ def coder() -> None:
         took, data = spent(lambda g=grey: compact.samples_bytes(GreyImage(g)))
         print(f"coder: {name}: samples {len(data)} bytes, {took:.2f} s: {len(data) / len(png.getvalue()):.2f} of PNG,"
               f" {len(data) / len(lzma.compress(grey.tobytes(), preset=9)):.2f} of xz")  # fmt: skip
-        columns, rows = compact.GRID * (width // 4), compact.GRID * (height // 4)
-        took, data = spent(partial(compact.edges_bytes, edges, columns, rows))
+        columns, rows = 16 * (width // 4), 16 * (height // 4)
+        took, data = spent(partial(compact_edges.edges_bytes, edges, columns, rows))
         grid = np.rint(edges.vertices / (edges.width, edges.height) * (columns, rows)).astype(np.int16)
         chains = [np.diff(grid[along], axis=0, prepend=0) for along, _ in trails(grid, edges.edges)]
         plain = np.concatenate(chains).astype("<i2").tobytes()

@@ -90,14 +90,17 @@ def _illustration(data: bytes) -> Any:
 
 def _compact(data: bytes) -> Any:
     """A member of a packed illustration, by its first bytes."""
-    from penink_cli.formats import compact, compact_lines
+    from penink_cli.formats import compact, compact_edges, compact_lines
+    from tests.fuzz.seeds import EDGES
 
     try:
-        if data.startswith(compact.SAMPLES):
-            return compact.samples_from(data, MAX_PIXELS)
+        if data.startswith((compact.SAMPLES, compact.SAMPLES_BESIDE)):
+            return compact.samples_from(data, MAX_PIXELS, EDGES)
         if data.startswith(compact_lines.LINES):
             return compact_lines.lines_from(data)
-        return compact.edges_from(data) if data.startswith(compact.EDGES) else compact.text_from(data)
+        if data.startswith((compact_edges.EDGES, compact_edges.EDGES_1)):
+            return compact_edges.edges_from(data)
+        return compact.text_from(data)
     except PeninkError as error:
         raise error.from_source(SOURCE) from None
 

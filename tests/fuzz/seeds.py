@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from penink_cli.formats import archive, compact, compact_lines, directions, edge_list, lines, pgm
+from penink_cli.formats import archive, compact, compact_edges, compact_lines, directions, edge_list, lines, pgm
 from penink_cli.ground.model import Directions, EdgeList, GreyImage
 from tests.faults.calls import encoded, strokes_text
 
@@ -66,6 +66,10 @@ def seeds(reader: str) -> Iterator[bytes]:
         yield archive.pack({"illustration.json": b"{}", "0.samples": b"PIs1"})
     if reader == "compact":
         yield compact.samples_bytes(IMAGE)
-        yield compact.edges_bytes(EDGES, 80, 64)
+        yield compact.samples_bytes(IMAGE, EDGES)
+        yield compact_edges.edges_bytes(EDGES, 80, 64)
+        from tests.illustration.test_compact import VECTORS
+
+        yield bytes.fromhex(VECTORS["PIe1"])
         yield compact_lines.lines_bytes(lines.read(io.BytesIO(json.dumps(LINES).encode()), ""))
         yield compact.text_bytes(b"some text, some text")

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from penink_cli.formats import compact
+from penink_cli.formats import compact, compact_edges
 from penink_cli.formats._compiled import compact as _compact
 from penink_cli.geometry import quantisation, validity
 from penink_cli.ground.errors import FormatError, LimitError, PeninkError
@@ -17,34 +17,44 @@ from penink_cli.ground.model import Directions, EdgeList, GreyImage
 from tests.conftest import ROOT
 from tests.illustration.conftest import grey, square, whirl
 
-#: What the format's first version writes, in hexadecimal. A form that gives other bytes is another version.
+#: What each version of a form wrote, in hexadecimal. A form that gives other bytes is another version.
 VECTORS = json.loads((ROOT / "tests/illustration/compact_vectors.json").read_text())
+CORNERS = np.array([[2, 2], [12, 3], [13, 10], [3, 9], [8, 6]], float)
+EDGES = EdgeList(16, 12, CORNERS, np.array([[0, 1], [1, 2], [2, 3], [3, 0], [2, 4]]), np.arange(5) / 16)
+#: The mean by length of each stretch between junctions: the ring and the whisker.
+LEVELLED = EdgeList(16, 12, CORNERS, EDGES.edges, np.array([1, 1, 1, 1, 4]) / 16)
 
 
 def by_formula() -> dict[str, tuple[bytes, object]]:
     """Contents that a few whole numbers describe: their compact bytes, and what reads them again."""
     y, x = np.mgrid[:12, :16]
     samples = GreyImage(((7 * x * x + 13 * y + x * y) % 64).astype(np.uint8), 63)
-    corner = np.array([[2, 2], [12, 3], [13, 10], [3, 9], [8, 6]], float)
-    edges = EdgeList(16, 12, corner, np.array([[0, 1], [1, 2], [2, 3], [3, 0], [2, 4]]), np.arange(5) / 16)
     text = b'{"name": "vectors", "numbers": [1, 2, 3]}'
     return {
-        "samples": (compact.samples_bytes(samples), samples),
-        "edges": (compact.edges_bytes(edges, 256, 192), edges),
-        "text": (compact.text_bytes(text), text),
+        "PIs1": (compact.samples_bytes(samples), samples),
+        "PIs2": (compact.samples_bytes(samples, EDGES), samples),
+        "PIe1": (b"", EDGES),
+        "PIe2": (compact_edges.edges_bytes(EDGES, 256, 192), LEVELLED),
+        "PIt1": (compact.text_bytes(text), text),
     }
 
 
-def test_the_bytes_are_those_of_the_first_version():
-    assert {name: data.hex() for name, (data, _) in by_formula().items()} == VECTORS
+def test_the_bytes_are_those_of_the_versions_that_are_written():
+    assert set(VECTORS) == set(by_formula())
+    for name, (data, _) in by_formula().items():
+        assert data[:4].decode() in (name, "")
+        assert not data or data.hex() == VECTORS[name], name
 
 
-def test_the_first_version_is_read():
-    given = {name: content for name, (_, content) in by_formula().items()}
-    read = {name: bytes.fromhex(data) for name, data in VECTORS.items()}
-    assert np.array_equal(compact.samples_from(read["samples"], 10**6).values, given["samples"].values)
-    assert as_set(compact.edges_from(read["edges"])) == as_set(given["edges"])
-    assert compact.text_from(read["text"]) == given["text"]
+@pytest.mark.parametrize("name", VECTORS)
+def test_every_version_is_read(name):
+    data, given = bytes.fromhex(VECTORS[name]), by_formula()[name][1]
+    if isinstance(given, GreyImage):
+        assert np.array_equal(compact.samples_from(data, 10**6, EDGES).values, given.values)
+    elif isinstance(given, EdgeList):
+        assert as_set(compact_edges.edges_from(data)) == as_set(given)
+    else:
+        assert compact.text_from(data) == given
 
 
 def as_set(edges: EdgeList) -> set[tuple]:
@@ -54,6 +64,11 @@ def as_set(edges: EdgeList) -> set[tuple]:
         (*sorted((tuple(edges.vertices[a]), tuple(edges.vertices[b]))), float(s))
         for (a, b), s in zip(edges.edges, strength)
     }
+
+
+def levelled(edges: EdgeList) -> EdgeList:
+    """As it is kept: one strength a stretch."""
+    return compact_edges.edges_from(compact_edges.edges_bytes(edges, 80, 60))
 
 
 def random_arrangement(seed: int, columns: int, rows: int) -> EdgeList:
@@ -80,6 +95,81 @@ def test_samples_come_back_exactly(seed, maxval, height, width):
     assert np.array_equal(back.values, image.values)
 
 
+def hidden_by_formula(edges: EdgeList, w: int, h: int) -> np.ndarray:
+    """Which of six neighbours each sample cannot see, by whole numbers and the tie rule written out."""
+
+    def sign(*values):
+        return next((1 if v > 0 else -1 for v in values if v), 0)
+
+    at = [(round(x * w / edges.width * 16), round(y * h / edges.height * 16)) for x, y in edges.vertices.tolist()]
+    cuts = np.zeros((h, w), np.uint8)
+    for i in range(h):
+        for j in range(w):
+            for k, (dx, dy) in enumerate([(-1, 0), (0, -1), (-1, -1), (1, -1), (-2, 0), (0, -2)]):
+                if not (0 <= j + dx < w and 0 <= i + dy):
+                    continue
+                p, q = (16 * j + 8, 16 * i + 8), (16 * (j + dx) + 8, 16 * (i + dy) + 8)
+                for a, b in ((at[a], at[b]) for a, b in edges.edges):
+                    side = [
+                        sign((b[0] - a[0]) * (s[1] - a[1]) - (b[1] - a[1]) * (s[0] - a[0]), a[1] - b[1], b[0] - a[0])
+                        for s in (p, q)
+                    ]
+                    view = [
+                        sign((q[0] - p[0]) * (v[1] - p[1]) - (q[1] - p[1]) * (v[0] - p[0]), q[1] - p[1], p[0] - q[0])
+                        for v in (a, b)
+                    ]
+                    if side[0] != side[1] and view[0] != view[1]:
+                        cuts[i, j] |= 1 << k
+    return cuts
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_what_an_edge_hides_is_exact(seed):
+    """Also of edges through samples and of vertices in line with two of them: the odd seeds have little else."""
+    rng = np.random.default_rng(seed)
+    w, h, step = 5 + seed, 9, 8 if seed % 2 else 1
+    points = rng.integers(0, (16 * w // step + 1, 16 * h // step + 1), (24, 2)) * float(step)
+    points[0], points[1] = (0, 8), (16 * w, 8)
+    edges = EdgeList(16 * w, 16 * h, points, np.arange(24).reshape(12, 2))
+    assert np.array_equal(compact._hidden(edges, w, h), hidden_by_formula(edges, w, h))
+
+
+def test_samples_beside_an_edge_are_told_by_their_own_side():
+    """Two smooth fields that meet along a slanted edge, with noise in neither: the edge saves what it hides."""
+    edges = EdgeList(128, 128, np.array([[30, 0], [100, 128.0]]), np.array([[0, 1]]))
+    y, x = np.mgrid[0:64, 0:64] + 0.5
+    right = (2 * x - 30) * 128 > 2 * y * 70
+    values = np.where(right, 8 + (x + y) / 8, 50 - y / 8).astype(np.uint8)
+    image = GreyImage(values, 63)
+    alone, beside = compact.samples_bytes(image), compact.samples_bytes(image, edges)
+    assert len(beside) < 0.8 * len(alone)
+    assert np.array_equal(compact.samples_from(beside, 10**6, edges).values, values)
+    with pytest.raises(FormatError, match="the layer has none"):
+        compact.samples_from(beside, 10**6)
+
+
+def test_edges_that_would_take_long_hide_nothing():
+    """A fan across all samples, again and again: more cells than a picture's edges pass."""
+    n = 3000
+    vertices = np.concatenate([[[0, 0]], np.column_stack([np.full(n, 4096.0), np.linspace(1, 4096, n)])])
+    fan = EdgeList(4096, 4096, vertices, np.column_stack([np.zeros(n, int), np.arange(1, n + 1)]))
+    assert not compact._hidden(fan, 256, 256).any()
+    few = EdgeList(4096, 4096, vertices, fan.edges[::100])
+    assert compact._hidden(few, 256, 256).any()
+
+
+def test_vertices_are_as_coarse_as_the_photo_allows():
+    """A step stays within .4 pixels of the photo, where 16 to the spacing can do that, and never moves twice."""
+    frame = EdgeList(640, 480, np.array([[3.07, 4.21], [400.3, 200.7]]), np.array([[0, 1]]))
+    for columns, points in ((64, 16), (101, 16), (128, 16), (200, 8), (400, 4), (640, 4)):
+        rows = columns * 3 // 4
+        assert compact_edges.points_to_spacing(frame, columns, rows) == points
+        assert points == 16 or max(640 / columns, 480 / rows) / points <= 0.4
+        moved = quantisation.quantise(frame, points * columns, points * rows, points)
+        assert compact_edges.on_grid(moved, columns, rows) == points
+        assert compact_edges.on_grid(frame, columns, rows) is None
+
+
 def test_samples_are_small():
     smooth = (np.add.outer(np.arange(128), np.arange(128)) // 5).astype(np.uint8)
     assert len(compact.samples_bytes(GreyImage(smooth, 63))) < 600
@@ -90,9 +180,10 @@ def test_samples_are_small():
 @pytest.mark.parametrize("seed", range(40))
 def test_edges_come_back_exactly_and_in_an_order_of_their_own(seed):
     edges = random_arrangement(seed, 80, 60)
-    packed = compact.edges_bytes(edges, 80, 60)
-    back = compact.edges_from(packed)
-    assert as_set(back) == as_set(edges)
+    packed = compact_edges.edges_bytes(edges, 80, 60)
+    back = compact_edges.edges_from(packed)
+    assert {edge[:2] for edge in as_set(back)} == {edge[:2] for edge in as_set(edges)}
+    assert as_set(levelled(back)) == as_set(back)
     validity.check(back)
     rng = np.random.default_rng(seed)
     moved, order = rng.permutation(len(edges.vertices)), rng.permutation(len(edges.edges))
@@ -100,7 +191,7 @@ def test_edges_come_back_exactly_and_in_an_order_of_their_own(seed):
     vertices[moved] = edges.vertices
     assert edges.strength is not None
     shuffled = EdgeList(40, 30, vertices, moved[edges.edges][order][:, ::-1], edges.strength[order])
-    assert compact.edges_bytes(shuffled, 80, 60) == packed
+    assert compact_edges.edges_bytes(shuffled, 80, 60) == packed
 
 
 @pytest.mark.parametrize(("rows", "columns"), [(1, 1), (1, 9), (5, 1), (64, 96), (33, 47)])
@@ -134,7 +225,11 @@ def test_text_comes_back():
 
 PACKED = {
     "samples": (compact.samples_bytes(grey()), lambda data: compact.samples_from(data, 2000)),
-    "edges": (compact.edges_bytes(quantisation.quantise(square(), 384, 256), 384, 256), compact.edges_from),
+    "samples beside edges": (
+        compact.samples_bytes(grey(), square()),
+        lambda data: compact.samples_from(data, 2000, square()),
+    ),
+    "edges": (compact_edges.edges_bytes(quantisation.quantise(square(), 384, 256), 384, 256), compact_edges.edges_from),
     "directions": (compact.directions_bytes(whirl()), compact.directions_from),
     "text": (compact.text_bytes(b"the quick brown fox jumps over the lazy dog"), compact.text_from),
 }
@@ -162,7 +257,7 @@ def test_damaged_members_give_an_error_or_something_sound(kind):
             found = read(bytes(bad))
         except PeninkError:
             continue
-        if kind == "samples":
+        if kind.startswith("samples"):
             assert found.values.max() <= found.maxval
         if kind == "directions":
             assert np.allclose(found.cos2**2 + found.sin2**2, 1) and found.confidence.max() <= 1
@@ -172,7 +267,7 @@ def test_a_few_bytes_cannot_announce_more_than_is_allowed():
     with pytest.raises(LimitError, match="allowed in all"):
         compact.samples_from(compact.SAMPLES + b"\xff\xff\x7f\xff\xff\x7f\x3f" + bytes(20), 10**12)
     with pytest.raises(FormatError, match="truncated"):
-        compact.edges_from(compact.EDGES + b"\x10\x10\x10\x10\xff\xff\x7f\x00" + bytes(20))
+        compact_edges.edges_from(compact_edges.EDGES + b"\x10\x10\x10\x10\xff\xff\x7f\x00" + bytes(20))
     with pytest.raises(LimitError, match="16384 x 16384 samples of a direction field"):
         compact.directions_from(compact.DIRECTIONS + b"\x80\x80\x01\x80\x80\x01" + bytes(20))
     with pytest.raises(FormatError, match="0 x 7 samples"):

@@ -218,9 +218,22 @@ cdef class Coder:
         self._context[5] = c | (a & 255)
         return self._number(kind & 3, value)
 
-    def samples(self, int[:, ::1] values, int maxval) -> None:
+    def number_in(self, long long value, int kind, int a, int b, int c) -> int:
+        """One whole number of up to 40 bits, in three contexts of 0 … 255 and pairs of them; else as `number`."""
+        cdef int base = (kind & 15) << 8
+        self._context[0] = base
+        self._context[1] = base | (a & 255)
+        self._context[2] = base | (b & 255)
+        self._context[3] = base | (c & 255)
+        self._context[4] = (base + (a & 255) * 521 + (b & 255) * 37 + 1) & 4095
+        self._context[5] = (base + (a & 255) * 521 + (c & 255) * 61 + 2) & 4095
+        return self._number(kind & 3, value)
+
+    def samples(self, int[:, ::1] values, int maxval, unsigned char[:, ::1] cuts=None) -> None:
         """Samples row by row, each as its difference from what its neighbours let expect.
 
+        cuts: (h, w) bits of the neighbours that an edge parts a sample from, as `cuts.mark` has them: their
+        values tell nothing, and are taken to be what those that are left have on the whole.
         values: (h, w), written from or read into. A number read that would leave 0 … maxval is
         wrapped into it, so that any bytes at all give samples. Reading stops where the bytes
         overrun: a few of them may announce millions of samples.
@@ -232,7 +245,8 @@ cdef class Coder:
         while (maxval >> shift) > 63:
             shift += 1
         cdef int north, west, north_west, north_east, north_north, west_west, guess, median, level, rough, before, value
-        cdef int around
+        cdef int around, hidden, weight
+        cdef int count = 0
         cdef int[:, ::1] errors = np.zeros((2, w + 2), np.int32)  # absolute, of this row and the last
         for i in range(h):
             for j in range(w):
@@ -244,6 +258,36 @@ cdef class Coder:
                 north_east = values[i - 1, j + 1] if i and j + 1 < w else north
                 north_north = values[i - 2, j] if i > 1 else north
                 west_west = values[i, j - 2] if j > 1 else west
+                if cuts is not None:
+                    hidden = cuts[i, j]
+                    count = 0
+                    if i == 0 and hidden & 1:
+                        hidden |= 2 | 4 | 8 | 32
+                    elif j == 0 and hidden & 2:
+                        hidden |= 1 | 4 | 16
+                    if hidden:
+                        around = weight = 0
+                        if not hidden & 1:
+                            around += 6 * west
+                            weight += 6
+                        if not hidden & 2:
+                            around += 6 * north
+                            weight += 6
+                        if not hidden & 4:
+                            around += 2 * north_west
+                            weight += 2
+                        if not hidden & 8:
+                            around += 3 * north_east
+                            weight += 3
+                        if weight:
+                            around = (2 * around + weight) // (2 * weight)
+                            west = around if hidden & 1 else west
+                            north = around if hidden & 2 else north
+                            north_west = around if hidden & 4 else north_west
+                            north_east = around if hidden & 8 else north_east
+                            west_west = around if hidden & 16 else west_west
+                            north_north = around if hidden & 32 else north_north
+                        count = 3 if weight == 0 else 2 if hidden & 3 == 3 else 1
                 # Median of west, north and their plane; and the mean of what slopes and neighbours say.
                 if north_west >= max(west, north):
                     median = min(west, north)
@@ -267,6 +311,10 @@ cdef class Coder:
                 self._context[4] = self._sign(west - guess, shift) * 125 + self._sign(north - guess, shift) * 25
                 self._context[4] += self._sign(north_north - guess, shift) * 5 + self._sign(west_west - guess, shift)
                 self._context[5] = self._magnitude(before)
+                if count:
+                    self._context[0] += 144 * count
+                    self._context[3] += 300 * count
+                    self._context[5] += 12 * count
                 value = guess + <int>self._number(0 if rough else 1, values[i, j] - guess)
                 if self._reading:
                     value = value % (maxval + 1)
