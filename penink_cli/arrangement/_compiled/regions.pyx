@@ -8,6 +8,7 @@ import numpy as np
 from libc.math cimport ceil
 from libc.string cimport memmove, memset
 from penink_cli.arrangement._compiled.place cimport MOST_EDGES, Place
+from penink_cli.arrangement._compiled.products cimport add_scaled
 
 SIDE, FINENESS = MOST_SIDE, FINE  # of the widest window, pixels; points a pixel
 
@@ -17,12 +18,14 @@ cdef class Regions:
 
     taps, sums: (2 r + 1,) what each point gives to a pixel along one axis: the camera's blur over the pixel's width;
     the same summed up. top, left, rows, columns: the window, in pixels; first_row … last_column: those of its pixels
-    that are compared with the photo, counted in the window.
+    that are compared with the photo, counted in the window; wide, count: how many these are in a row, and in all.
     walls: of each point, whether an edge passes below. breaks, columns_of: of each row, how many edges pass between
     its points, and the columns after them: each begins a run. begin, end: runs of each row. start, parent, region:
-    first column of each run, a run that it is one with, its region. present: regions of each row; across: what pixels
-    see of them in that row.
-    design: what each pixel sees of each region, then two slopes; then room for what moves of vertices would change.
+    first column of each run, a run that it is one with, its region. present: regions of each row; across: what the
+    compared pixels of that row's points see of them. left_of: what pixel j sees of a row left of the column
+    FINE q + f, at [f, MOST_SIDE - q + j].
+    design: of each unknown a plane of the compared pixels, row after row: first what each sees of each region, then two
+    slopes, then room for what moves of vertices would change.
     """
 
     def __init__(self, double[::1] taps):
@@ -34,10 +37,13 @@ cdef class Regions:
         self.begin, self.end = np.zeros(MOST_POINTS, np.int32), np.zeros(MOST_POINTS, np.int32)
         self.start = np.zeros(MOST_POINTS * (MOST_EDGES + 1) + 2, np.int32)
         self.parent, self.region = np.copy(self.start), np.copy(self.start)
-        self.total = np.zeros(MOST_SIDE, np.float64)
+        reach = len(taps) // 2
+        points = FINE * np.arange(MOST_SIDE, -MOST_SIDE - 1, -1) - FINE // 2 + reach
+        at = np.clip(points + np.arange(FINE)[:, None], 0, 2 * reach + 1)
+        self.left_of = np.ascontiguousarray(np.asarray(self.sums)[at])
         self.present = np.zeros((MOST_POINTS, MOST_REGIONS), np.uint8)
         self.across = np.zeros((MOST_POINTS, MOST_REGIONS, MOST_SIDE), np.float64)
-        self.design = np.zeros((MOST_SIDE, MOST_SIDE, MOST_UNKNOWN), np.float64)
+        self.design = np.zeros((MOST_UNKNOWN, MOST_PIXELS), np.float64)
 
     cdef void block(self, Place place) noexcept nogil:
         """Note where edges pass between points of a row, and mark where they pass below a point."""
@@ -136,52 +142,76 @@ cdef class Regions:
             if other_end <= one_end:
                 other += 1
 
-    cdef void see(self) noexcept nogil:
-        """How much of each region each compared pixel sees: the first columns of the design; then the two slopes."""
-        cdef int i, j, k, d, at, run, first, last
-        cdef double weight
-        cdef double* total
+    cdef void see_along(self, int i) noexcept nogil:
+        """What the compared pixels see of each region along row i of points: the row goes on beyond the window."""
+        cdef int j, k, run
+        cdef int wide = self.wide
+        cdef double everything = self.sums[self.sums.shape[0] - 1]
         cdef double* row
+        cdef const double* low
+        cdef const double* high
+        cdef double[MOST_SIDE] part
+        for k in range(self.regions):
+            self.present[i, k] = 0
+        low = NULL
+        for run in range(self.begin[i], self.end[i]):
+            k = self.region[run]
+            row = &self.across[i, k, 0]
+            high = self.seen_left_of(self.start[run + 1]) if run + 1 < self.end[i] else NULL
+            if low == NULL and high == NULL:
+                for j in range(wide):
+                    part[j] = everything
+            elif low == NULL:
+                for j in range(wide):
+                    part[j] = high[j]
+            elif high == NULL:
+                for j in range(wide):
+                    part[j] = everything - low[j]
+            else:
+                for j in range(wide):
+                    part[j] = high[j] - low[j]
+            if not self.present[i, k]:
+                memset(row, 0, wide * sizeof(double))
+                self.present[i, k] = 1
+            add_scaled(row, part, 1.0, wide)
+            low = high
+
+    cdef inline const double* seen_left_of(self, int column) noexcept nogil:
+        """What the compared pixels of a row see of it left of a column of points."""
+        return &self.left_of[column % FINE, MOST_SIDE - column // FINE + self.first_column]
+
+    cdef void see(self) noexcept nogil:
+        """How much of each region each compared pixel sees: the first planes of the design; then the two slopes.
+
+        All that a pixel sees is 1, so that the first region is what the others leave.
+        """
+        cdef int i, j, k, d, at, first
+        cdef double* plane
+        cdef double* rest
         cdef int reach = <int>(self.taps.shape[0] // 2)
         cdef int high = self.rows * FINE
-        cdef int wide = self.columns * FINE
+        cdef int wide = self.wide
         cdef int regions = self.regions
-        for i in range(high):
-            for k in range(regions):
-                self.present[i, k] = 0
-            for run in range(self.begin[i], self.end[i]):
-                # The row goes on beyond the window as it ends.
-                first = self.start[run] if run > self.begin[i] else -MOST_POINTS
-                last = self.start[run + 1] if run + 1 < self.end[i] else wide + MOST_POINTS
-                k = self.region[run]
-                if not self.present[i, k]:
-                    self.present[i, k] = 1
-                    memset(&self.across[i, k, 0], 0, self.columns * sizeof(double))
-                for j in range(
-                    max(self.first_column, (first - reach) // FINE - 1 if first > 0 else 0),
-                    min(self.last_column, (last + reach) // FINE + 2),
-                ):
-                    at = FINE * j + FINE // 2 - reach  # the first tap
-                    self.across[i, k, j] += self.sums[min(2 * reach + 1, max(0, last - at))]
-                    self.across[i, k, j] -= self.sums[min(2 * reach + 1, max(0, first - at))]
-        for i in range(self.first_row, self.last_row):
-            for k in range(regions):
-                total = &self.total[0]
-                for j in range(self.first_column, self.last_column):
-                    total[j] = 0.0
+        first = max(0, FINE * self.first_row + FINE // 2 - reach)
+        for i in range(first, min(high, FINE * (self.last_row - 1) + FINE // 2 + reach + 1)):
+            self.see_along(i)
+        for i in range(self.last_row - self.first_row):
+            rest = &self.design[0, i * wide]
+            for j in range(wide):
+                rest[j] = 1.0
+            for k in range(1, regions):
+                plane = &self.design[k, i * wide]
+                memset(plane, 0, wide * sizeof(double))
                 for d in range(-reach, reach + 1):
-                    at = min(high - 1, max(0, FINE * i + FINE // 2 + d))
-                    if not self.present[at, k]:
-                        continue
-                    row = &self.across[at, k, 0]
-                    weight = self.taps[d + reach]
-                    for j in range(self.first_column, self.last_column):
-                        total[j] += weight * row[j]
-                for j in range(self.first_column, self.last_column):
-                    self.design[i, j, k] = total[j]
-            for j in range(self.first_column, self.last_column):
-                self.design[i, j, regions] = 0.1 * (i - 0.5 * self.rows)
-                self.design[i, j, regions + 1] = 0.1 * (j - 0.5 * self.columns)
+                    at = min(high - 1, max(0, FINE * (self.first_row + i) + FINE // 2 + d))
+                    if self.present[at, k]:
+                        add_scaled(plane, &self.across[at, k, 0], self.taps[d + reach], wide)
+                add_scaled(rest, plane, -1.0, wide)
+            plane = &self.design[regions, i * wide]
+            rest = &self.design[regions + 1, i * wide]
+            for j in range(wide):
+                plane[j] = 0.1 * (self.first_row + i - 0.5 * self.rows)
+                rest[j] = 0.1 * (self.first_column + j - 0.5 * self.columns)
 
     cdef int region_at(self, double x, double y) noexcept nogil:
         """The region at a place in the window (pixels)."""

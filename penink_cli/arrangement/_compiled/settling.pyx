@@ -265,5 +265,5 @@ cdef class Settler(View):
                 y = self.best.y[u] + (k + 0.5) / n * (self.best.y[v] - self.best.y[u]) + side * ny - self.top
                 i = min(self.last_row - 1, max(self.first_row, <int>floor(y)))
                 j = min(self.last_column - 1, max(self.first_column, <int>floor(x)))
-                total += side * self.residual[i, j]
+                total += side * self.residual[(i - self.first_row) * self.wide + j - self.first_column]
         return total * total / (2 * n) if fabs(total) > _STEP * n else 0.0

@@ -7,7 +7,9 @@ See junctions.py.
 import numpy as np
 from libc.math cimport INFINITY, fabs, sqrt
 from penink_cli.arrangement._compiled.place cimport Place
-from penink_cli.arrangement._compiled.regions cimport EQUATIONS, MOST_MOVED, MOST_SIDE, MOST_UNKNOWN, Regions
+from penink_cli.arrangement._compiled.products cimport add_scaled, dot
+from libc.string cimport memcpy, memset
+from penink_cli.arrangement._compiled.regions cimport MOST_MOVED, MOST_PIXELS, MOST_SIDE, MOST_UNKNOWN, Regions
 
 cdef double _RIDGE = 1e-4  # holds the grey of a region that no pixel tells of
 cdef double _OPTIMISM = 2.0  # times what a step is expected to give, all steps may give at most
@@ -23,23 +25,27 @@ cdef class Window(Regions):
     photo: (h, w) grey 0 … 1. taps: as of `Regions`. spread: standard deviation of the camera's blur and a pixel's width
     together, pixels.
     number: (vertices of the place,) of each its number k among those that move, −1 for the others; moved: how many do.
-    design: (rows, columns, unknowns) J, of `Regions`.
-    residual: (rows, columns) r, photo less picture. normal_matrix: (unknowns, unknowns) JᵀJ, its upper triangle.
+    design: (unknowns, compared pixels) Jᵀ, of `Regions`. starts, stops: of each unknown, between which pixels it tells.
+    residual: (compared pixels,) r, photo less picture. normal_matrix: (unknowns, unknowns) JᵀJ, its upper triangle;
+    kept: the same of the regions and slopes.
     right_hand_side: (unknowns,) Jᵀr; `solve` leaves the solution there. gradient: (2 moved,) its part of the vertices.
     prior: (moved, 6) what is known of each vertex otherwise, as A (xx, xy, yy), b (x, y) and c of a cost
     xᵀ A x − 2 bᵀ x + c in grey², x pixels from the window's corner.
-    step: (moved, 2) the step of each vertex, pixels. response: (rows, columns) what a unit bend adds to the picture.
+    step: (moved, 2) the step of each vertex, pixels. response: (compared pixels,) what a unit bend adds to the picture;
+    ends: (2, compared pixels) what an edge's moving sideways at its beginning and at its end adds.
     """
 
     def __init__(self, float[:, ::1] photo, double[::1] taps, double spread):
         Regions.__init__(self, taps)
         self.photo, self.spread = photo, spread
-        self.residual = np.zeros((MOST_SIDE, MOST_SIDE), np.float64)
+        self.residual = np.zeros(MOST_PIXELS, np.float64)
         self.normal_matrix = np.zeros((MOST_UNKNOWN, MOST_UNKNOWN), np.float64)
         self.right_hand_side = np.zeros(MOST_UNKNOWN, np.float64)
         self.grey = np.zeros(MOST_UNKNOWN, np.float64)
         self.prior = np.zeros((MOST_MOVED, 6), np.float64)
-        self.response = np.zeros((MOST_SIDE, MOST_SIDE), np.float64)
+        self.response = np.zeros(MOST_PIXELS, np.float64)
+        self.ends = np.zeros((2, MOST_PIXELS), np.float64)
+        self.kept = np.zeros((MOST_UNKNOWN, MOST_UNKNOWN), np.float64)
         self.gradient = np.zeros(2 * MOST_MOVED, np.float64)
         self.step = np.zeros((MOST_MOVED, 2), np.float64)
 
@@ -81,36 +87,27 @@ cdef class Window(Regions):
         self.last_row = self.rows - (0 if bottom >= height else halo)
         self.first_column = 0 if left <= 0 else halo
         self.last_column = self.columns - (0 if right >= width else halo)
-        return (self.last_row - self.first_row) * (self.last_column - self.first_column)
+        self.wide = self.last_column - self.first_column
+        self.count = (self.last_row - self.first_row) * self.wide
+        return self.count
 
-    cdef void accumulate(self, int unknown) noexcept nogil:
-        """Normal matrix and right-hand side of the residual, in the first columns of the design."""
-        cdef int i, j, a, b
-        cdef double v, residual
-        # Arrays of its own, which the compiler knows to be apart: a third faster.
-        cdef double[EQUATIONS] matrix
-        cdef double[MOST_UNKNOWN] vector, row
+    cdef void accumulate(self, int known, int unknown) noexcept nogil:
+        """Normal matrix and right-hand side of the residual, in so many planes of the design.
+
+        Of the first planes, so many as are known, the matrix is kept.
+        """
+        cdef int a, b, start, stop
         for a in range(unknown):
-            vector[a] = 0.0
+            start, stop = self.starts[a], self.stops[a]
+            self.right_hand_side[a] = dot(&self.design[a, start], &self.residual[start], stop - start)
             for b in range(a, unknown):
-                matrix[a * MOST_UNKNOWN + b] = 0.0
-        for i in range(self.first_row, self.last_row):
-            for j in range(self.first_column, self.last_column):
-                residual = self.residual[i, j]
-                for a in range(unknown):
-                    row[a] = self.design[i, j, a]
-                for a in range(unknown):
-                    v = row[a]
-                    if v == 0.0:
-                        continue
-                    vector[a] += v * residual
-                    for b in range(a, unknown):
-                        matrix[a * MOST_UNKNOWN + b] += v * row[b]
-        for a in range(unknown):
-            self.right_hand_side[a] = vector[a]
-            for b in range(a, unknown):
-                self.normal_matrix[a, b] = matrix[a * MOST_UNKNOWN + b]
-            self.normal_matrix[a, a] += _RIDGE
+                if b < known:
+                    self.normal_matrix[a, b] = self.kept[a, b]
+                    continue
+                start, stop = max(self.starts[a], self.starts[b]), min(self.stops[a], self.stops[b])
+                self.normal_matrix[a, b] = dot(&self.design[a, start], &self.design[b, start], stop - start)
+            if a >= known:
+                self.normal_matrix[a, a] += _RIDGE
 
     cdef void solve(self, int unknown) noexcept nogil:
         """Solve the normal equations by L D Lᵀ; `right_hand_side` becomes the solution."""
@@ -131,64 +128,80 @@ cdef class Window(Regions):
     cdef double render(self, Place place) noexcept nogil:
         """Render with the best greys: the sum of squares of the residual; negative where there are too many regions."""
         cdef int i, j, k, unknown
-        cdef double v
-        cdef double total = 0.0
+        cdef float* row
+        cdef double* residual = &self.residual[0]
+        cdef double grey
         if not self.part(place):
             return -1.0
         self.see()
         unknown = self.regions + 2
-        for i in range(self.first_row, self.last_row):
-            for j in range(self.first_column, self.last_column):
-                self.residual[i, j] = self.photo[self.top + i, self.left + j] - 0.5
-        self.accumulate(unknown)
+        for i in range(self.last_row - self.first_row):
+            row = &self.photo[self.top + self.first_row + i, self.left + self.first_column]
+            for j in range(self.wide):
+                residual[i * self.wide + j] = row[j] - 0.5
+        for k in range(unknown):
+            self.starts[k], self.stops[k] = 0, self.count
+        self.accumulate(0, unknown)
+        for k in range(unknown):
+            memcpy(&self.kept[k, 0], &self.normal_matrix[k, 0], unknown * sizeof(double))
         self.solve(unknown)
         for k in range(unknown):
-            self.grey[k] = self.right_hand_side[k]
-        for i in range(self.first_row, self.last_row):
-            for j in range(self.first_column, self.last_column):
-                v = self.residual[i, j]
-                for k in range(unknown):
-                    v -= self.design[i, j, k] * self.grey[k]
-                self.residual[i, j] = v
-                total += v * v
-        return total
+            self.grey[k] = grey = self.right_hand_side[k]
+            add_scaled(residual, &self.design[k, 0], -grey, self.count)
+        return dot(residual, residual, self.count)
 
     cdef inline double grey_at(self, double x, double y) noexcept nogil:
         """The grey of the region at a place in the window (pixels)."""
         return self.grey[self.region_at(x, y)]
 
+    cdef bint splat(self, double x, double y, double* over, int* box) noexcept nogil:
+        """What a point's bell gives to columns, and the box of compared pixels (top, bottom, left, right) it reaches."""
+        cdef int j
+        cdef int reach = 1 + <int>(3.465 * self.spread)  # pixels: beyond, the bell is 0
+        if x < -3 or y < -3 or x > self.columns + 3 or y > self.rows + 3:
+            return False
+        box[0] = max(self.first_row, <int>y - reach)
+        box[1] = min(self.last_row, <int>y + reach + 1)
+        box[2] = max(self.first_column, <int>x - reach)
+        box[3] = min(self.last_column, <int>x + reach + 1)
+        if box[0] >= box[1] or box[2] >= box[3]:
+            return False
+        for j in range(box[2], box[3]):
+            over[j - box[2]] = self.bell(fabs(j + 0.5 - x))
+        return True
+
     cdef void jacobian(self, Place place, int base) noexcept nogil:
-        """The Jacobian in the vertices' x and y: the design's columns from `base` on.
+        """The Jacobian in the vertices' x and y: the design's planes from `base` on.
 
         An edge that goes sideways by δ adds δ times the step across it, blurred, all along it; what a vertex's
         moving gives a point of its edge fades linearly towards the other end.
         """
-        cdef int e, i, j, k, n, a, b, first, last
+        cdef int e, i, j, k, n, p, end, first, last
         cdef double x0, y0, dx, dy, x, y, t, length, step, weight, v
-        cdef double[26] over
-        cdef int reach = 1 + <int>(3.465 * self.spread)  # pixels: beyond, the bell is 0
-        for i in range(self.first_row, self.last_row):
-            for j in range(self.first_column, self.last_column):
-                for k in range(base, base + 2 * MOST_MOVED):
-                    self.design[i, j, k] = 0.0
+        cdef double[MOST_SIDE] over
+        cdef int[4] box
+        for k in range(base, base + 2 * self.moved):
+            memset(&self.design[k, 0], 0, self.count * sizeof(double))
+            self.starts[k], self.stops[k] = self.count, 0
         for e in range(place.edges):
-            a = self.number[place.a[e]]
-            b = self.number[place.b[e]]
-            if a < 0 and b < 0:
+            if self.number[place.a[e]] < 0 and self.number[place.b[e]] < 0:
                 continue
             x0 = place.x[place.a[e]] - self.left
             y0 = place.y[place.a[e]] - self.top
             dx = place.x[place.b[e]] - self.left - x0
             dy = place.y[place.b[e]] - self.top - y0
             length = sqrt(dx * dx + dy * dy)
-            n = 1 + <int>(3 * length)
+            n = 1 + <int>(2 * length)
             if length < 1e-6:
                 continue
+            memset(&self.ends[0, 0], 0, self.count * sizeof(double))
+            memset(&self.ends[1, 0], 0, self.count * sizeof(double))
+            first, last = self.last_row, self.first_row
             for k in range(n):
                 t = (k + 0.5) / n
                 x = x0 + t * dx
                 y = y0 + t * dy
-                if x < -3 or y < -3 or x > self.columns + 3 or y > self.rows + 3:
+                if not self.splat(x, y, over, box):
                     continue
                 # (−dy, dx) / length is to the right of the way on the screen; what it leaves behind is left of it.
                 step = self.grey_at(x + 0.4 * dy / length, y - 0.4 * dx / length)
@@ -196,19 +209,25 @@ cdef class Window(Regions):
                 if step == 0.0:
                     continue
                 weight = step * length / n / (6.283185307179586 * self.spread * self.spread)
-                first = max(self.first_column, <int>x - reach)
-                last = min(self.last_column, <int>x + reach + 1)
-                for j in range(first, last):
-                    over[j] = self.bell(fabs(j + 0.5 - x))
-                for i in range(max(self.first_row, <int>y - reach), min(self.last_row, <int>y + reach + 1)):
+                first, last = min(first, box[0]), max(last, box[1])
+                for i in range(box[0], box[1]):
                     v = weight * self.bell(fabs(i + 0.5 - y))
-                    for j in range(first, last):
-                        if a >= 0:
-                            self.design[i, j, base + 2 * a] += v * over[j] * (1 - t) * (-dy / length)
-                            self.design[i, j, base + 2 * a + 1] += v * over[j] * (1 - t) * (dx / length)
-                        if b >= 0:
-                            self.design[i, j, base + 2 * b] += v * over[j] * t * (-dy / length)
-                            self.design[i, j, base + 2 * b + 1] += v * over[j] * t * (dx / length)
+                    p = (i - self.first_row) * self.wide + box[2] - self.first_column
+                    add_scaled(&self.ends[0, p], over, v * (1 - t), box[3] - box[2])
+                    add_scaled(&self.ends[1, p], over, v * t, box[3] - box[2])
+            if first >= last:
+                continue
+            first, last = (first - self.first_row) * self.wide, (last - self.first_row) * self.wide
+            for end in range(2):
+                k = self.number[place.b[e] if end else place.a[e]]
+                if k < 0:
+                    continue
+                k = base + 2 * k
+                for j in range(2):
+                    weight = dx / length if j else -dy / length
+                    add_scaled(&self.design[k + j, first], &self.ends[end, first], weight, last - first)
+                    self.starts[k + j] = min(self.starts[k + j], first)
+                    self.stops[k + j] = max(self.stops[k + j], last)
 
     cdef double predicted_gain(self, Place place, int e, double part) noexcept nogil:
         """How much a bend at that part of an edge's way would explain, if what it changes were linear in its size.
@@ -216,35 +235,32 @@ cdef class Window(Regions):
         `residual` must be that of the place.
         """
         cdef int i, j, k
-        cdef double t, x, y, v, weight
+        cdef double t, x, y, v, weight, square
         cdef double x0 = place.x[place.a[e]] - self.left
         cdef double y0 = place.y[place.a[e]] - self.top
         cdef double dx = place.x[place.b[e]] - self.left - x0
         cdef double dy = place.y[place.b[e]] - self.top - y0
         cdef double length = sqrt(dx * dx + dy * dy)
         cdef int n = 1 + <int>(2 * length)
-        cdef double product = 0.0, square = 0.0
-        cdef int reach = 1 + <int>(3.465 * self.spread)
-        for i in range(self.first_row, self.last_row):
-            for j in range(self.first_column, self.last_column):
-                self.response[i, j] = 0.0
+        cdef double product
+        cdef double[MOST_SIDE] over
+        cdef int[4] box
+        memset(&self.response[0], 0, self.count * sizeof(double))
         for k in range(n):
             t = (k + 0.5) / n
             x = x0 + t * dx
             y = y0 + t * dy
-            if x < -3 or y < -3 or x > self.columns + 3 or y > self.rows + 3:
+            if not self.splat(x, y, over, box):
                 continue
             weight = self.grey_at(x + 0.4 * dy / length, y - 0.4 * dx / length)
             weight -= self.grey_at(x - 0.4 * dy / length, y + 0.4 * dx / length)
             weight *= t / part if t < part else (1 - t) / (1 - part)
-            for i in range(max(self.first_row, <int>y - reach), min(self.last_row, <int>y + reach + 1)):
+            for i in range(box[0], box[1]):
                 v = weight * self.bell(fabs(i + 0.5 - y))
-                for j in range(max(self.first_column, <int>x - reach), min(self.last_column, <int>x + reach + 1)):
-                    self.response[i, j] += v * self.bell(fabs(j + 0.5 - x))
-        for i in range(self.first_row, self.last_row):
-            for j in range(self.first_column, self.last_column):
-                product += self.response[i, j] * self.residual[i, j]
-                square += self.response[i, j] * self.response[i, j]
+                j = (i - self.first_row) * self.wide + box[2] - self.first_column
+                add_scaled(&self.response[j], over, v, box[3] - box[2])
+        product = dot(&self.response[0], &self.residual[0], self.count)
+        square = dot(&self.response[0], &self.response[0], self.count)
         return product * product / square if square > 0 else 0.0
 
     cdef inline double bell(self, double d) noexcept nogil:
@@ -287,7 +303,7 @@ cdef class Window(Regions):
         for _ in range(rounds):
             base = self.regions + 2
             self.jacobian(trial, base)
-            self.accumulate(base + 2 * self.moved)
+            self.accumulate(base, base + 2 * self.moved)
             for v in range(place.vertices):
                 k = self.number[v]
                 if k >= 0:
