@@ -1,12 +1,13 @@
 """Where the grey changes fastest: edge points at sub-pixel positions, after Canny.
 
-The paper finds its discontinuities with Canny's detector (section 3, reference [5]).
-scikit-image says which pixels hold a ridge of the gradient; this module, the only one
-that imports it, then places a point on the ridge to a fraction of a pixel.
+The paper finds its discontinuities with Canny's detector (section 3, reference [5]). A kernel says which pixels hold a
+ridge of the gradient, those that scikit-image's detector finds (it takes longer to load than this to run); this module
+then places a point on the ridge to a fraction of a pixel.
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import partial
 
@@ -14,13 +15,14 @@ import numpy as np
 import numpy.typing as npt
 
 from penink_cli.arrangement._compiled import points as _points
+from penink_cli.arrangement._compiled import ridges as _ridges
 from penink_cli.ground import exact
 from penink_cli.ground import threads as threading
 from penink_cli.ground.model import Floats
 
 Ints32 = npt.NDArray[np.int32]
 
-_SOBEL_GAIN = 8.0  # scikit-image thresholds the sum of Sobel's weights, not their mean
+_SOBEL_GAIN = 8.0  # ridges are told by the sum of Sobel's weights, not their mean
 SURROUND_PX = 10
 _SPACING = 0.5  # pixels; nearer points are one place found twice
 _BAND_ROWS = 256  # 12 megapixels in one piece take 1.6 s and 430 MB, in bands that stay in cache 0.5 s
@@ -128,22 +130,26 @@ def edge_points(grey: npt.NDArray[np.floating], sigma: float, low: float) -> Edg
     return EdgePoints(pixel[kept], position, gradient, surround, width_, index).indexed()
 
 
+def _gaussian(sigma: float) -> Floats:
+    """Weights of a Gaussian from the middle one to four deviations out; all, with their mirror images, sum to 1."""
+    weights = [float(exact.exp(-0.5 * (k / sigma) ** 2)) for k in range(int(4 * sigma + 0.5) + 1)]
+    return np.array(weights) / (weights[0] + 2 * math.fsum(weights[1:]))
+
+
 def _band(grey: npt.NDArray[np.floating], sigma: float, low: float, top: int) -> tuple[Ints32, Floats]:
     """Pixels and values, as of `_points.locate` and `surround`, of the rows from top on."""
-    from scipy.ndimage import gaussian_filter
-    from skimage.feature import canny
-
     halo = int(4 * sigma + 0.5) + 4 + SURROUND_PX
     first, last = max(0, top - halo), min(len(grey), top + _BAND_ROWS + halo)
     band = np.ascontiguousarray(grey[first:last], np.float32)
-    threshold = low * _SOBEL_GAIN
-    mask = canny(band, sigma, threshold, threshold, mode="nearest")
-    mask[: top - first] = False
-    mask[top - first + _BAND_ROWS :] = False
+    smooth = np.empty_like(band)
+    _ridges.smooth(band, _gaussian(sigma), smooth)
+    mask = np.zeros(band.shape, np.uint8)
+    _ridges.ridges(smooth, low * _SOBEL_GAIN, mask)
+    mask[: top - first] = 0
+    mask[top - first + _BAND_ROWS :] = 0
     pixel = np.column_stack(np.nonzero(mask)).astype(np.int32)
     values = np.zeros((len(pixel), 6))
     if len(pixel):
-        smooth = gaussian_filter(band, sigma, mode="nearest")
         _points.locate(smooth, pixel, values)
         steepness = np.zeros_like(smooth)
         _points.steepness(smooth, steepness)

@@ -9,9 +9,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from scipy import ndimage
 
 from penink_cli.blasting.sheet import Cells, resample
+from penink_cli.ground.masks import distance, labelled
 from penink_cli.ground.model import Floats, Strokes
 
 #: A thing is where the tone exceeds half of solid; this dark at its core, with nothing darker than PAPER around it from
@@ -44,29 +44,27 @@ def marks(
         h, w = max(h, round(FINE * height_pt)), max(w, round(FINE * width_pt))
         tone = resample(tone, h, w)
     px = math.sqrt(w * h / (width_pt * height_pt))  # pixels in a point
-    part, count = ndimage.label(tone > LEVEL, np.ones((3, 3), int))
-    if not count:
-        return none
+    part, boxes = labelled(tone > LEVEL)
     chains: list[Floats] = []
     widths: list[float] = []
     scale = np.array([width_pt / w, height_pt / h])
     reach = math.ceil(FAR_PT * px) + 1
     most = 2 * math.ceil(40 * px)
-    for k, box in enumerate(ndimage.find_objects(part), 1):
-        if box[0].stop - box[0].start > most or box[1].stop - box[1].start > most:
+    for k, (first_row, last_row, first_column, last_column) in enumerate(boxes.tolist(), 1):
+        if last_row - first_row > most or last_column - first_column > most:
             continue
-        top, left = max(0, box[0].start - reach), max(0, box[1].start - reach)
-        window = (slice(top, box[0].stop + reach), slice(left, box[1].stop + reach))
+        top, left = max(0, first_row - reach), max(0, first_column - reach)
+        window = (slice(top, last_row + reach), slice(left, last_column + reach))
         mine = part[window] == k
         around = tone[window]
         if float(around[mine].max()) < CORE:
             continue
-        off = ndimage.distance_transform_edt(~mine) / px
-        others = ndimage.distance_transform_edt(part[window] == 0) / px  # letters stand close
+        off = distance(~mine) / px
+        others = distance(part[window] == 0) / px  # letters stand close
         ring = (off >= NEAR_PT) & (off <= FAR_PT) & (others >= NEAR_PT)
         if ring.any() and float(around[ring].max()) > PAPER:
             continue
-        if float(ndimage.distance_transform_edt(np.pad(mine, 1)).max()) / px > HALF_PT:
+        if float(distance(np.pad(mine, 1)).max()) / px > HALF_PT:
             continue
         rows, columns = np.nonzero(mine)
         at = (rows + top) * ink.shape[0] // h, (columns + left) * ink.shape[1] // w

@@ -155,7 +155,7 @@ cdef class Window(Regions):
         return self.grey[self.region_at(x, y)]
 
     cdef bint splat(self, double x, double y, double* over, int* box) noexcept nogil:
-        """What a point's bell gives to columns, and the box of compared pixels (top, bottom, left, right) it reaches."""
+        """What a point's bell gives to columns, and the box of pixels (top, bottom, left, right) it reaches."""
         cdef int j
         cdef int reach = 1 + <int>(3.465 * self.spread)  # pixels: beyond, the bell is 0
         if x < -3 or y < -3 or x > self.columns + 3 or y > self.rows + 3:

@@ -1,0 +1,135 @@
+# cython: boundscheck=False, wraparound=False, cdivision=True
+"""Compiled: a Gaussian low-pass, and the pixels on ridges of its gradient (Canny 1986). See gradient.py.
+
+Pictures are float32 (h, w), grey of any range. Sums are of doubles in one order and rounded to floats once, as
+scipy's are, so that the ridges are those that scikit-image finds.
+"""
+
+from libc.math cimport fabsf, sqrtf
+from libc.stdlib cimport free
+from penink_cli.ground._compiled.memory cimport room
+
+
+def smooth(const float[:, ::1] grey, const double[::1] weights, float[:, ::1] out) -> None:
+    """Grey filtered down and across by weights, the middle one first; beyond its sides it goes on as it ends."""
+    cdef Py_ssize_t h = grey.shape[0], w = grey.shape[1], n = weights.shape[0], i, j, k
+    cdef const float* above
+    cdef const float* below
+    cdef double weight
+    cdef double* sums = NULL
+    cdef float* wide = NULL
+    try:
+        sums = <double*>room(w, sizeof(double))
+        wide = <float*>room(w + 2 * n, sizeof(float))
+        with nogil:
+            for i in range(h):
+                for j in range(w):
+                    sums[j] = weights[0] * grey[i, j]
+                for k in range(n - 1, 0, -1):
+                    weight = weights[k]
+                    above, below = &grey[max(0, i - k), 0], &grey[min(h - 1, i + k), 0]
+                    for j in range(w):
+                        sums[j] += weight * (<double>above[j] + <double>below[j])
+                for j in range(w):
+                    wide[n + j] = <float>sums[j]
+                for j in range(n):
+                    wide[j], wide[n + w + j] = wide[n], wide[n + w - 1]
+                for j in range(w):
+                    sums[j] = weights[0] * wide[n + j]
+                for k in range(n - 1, 0, -1):
+                    weight = weights[k]
+                    for j in range(w):
+                        sums[j] += weight * (<double>wide[n + j - k] + <double>wide[n + j + k])
+                for j in range(w):
+                    out[i, j] = <float>sums[j]
+    finally:
+        free(sums)
+        free(wide)
+
+
+def ridges(const float[:, ::1] grey, float least, unsigned char[:, ::1] found) -> int:
+    """Mark the pixels, none on the border, whose gradient is the steepest on its own way: how many there are.
+
+    least: of Sobel's gradient. found: (h, w) zeros.
+    """
+    cdef Py_ssize_t h = grey.shape[0], w = grey.shape[1], i, j
+    cdef int count = 0
+    cdef float* lines = NULL
+    cdef float* x
+    cdef float* y
+    cdef float* m
+    if h < 3 or w < 3:
+        return 0
+    try:
+        lines = <float*>room(9 * w, sizeof(float))  # three rows of x, y and length
+        with nogil:
+            for i in range(2):
+                sobel(grey, i, lines + 3 * w * i)
+            for i in range(1, h - 1):
+                sobel(grey, i + 1, lines + 3 * w * ((i + 1) % 3))
+                x = lines + 3 * w * (i % 3)
+                y, m = x + w, x + 2 * w
+                for j in range(1, w - 1):
+                    if m[j] >= least and steepest(
+                        x[j], y[j], m + j, lines + 3 * w * ((i - 1) % 3) + 2 * w + j,
+                        lines + 3 * w * ((i + 1) % 3) + 2 * w + j,
+                    ):
+                        found[i, j] = 1
+                        count += 1
+        return count
+    finally:
+        free(lines)
+
+
+cdef void sobel(const float[:, ::1] grey, Py_ssize_t i, float* out) noexcept nogil:
+    """Sobel's gradient of row i: x, y and length, one after the other; beyond the border grey is mirrored."""
+    cdef Py_ssize_t w = grey.shape[1], j, left, right, end
+    cdef const float* above = &grey[max(0, i - 1), 0]
+    cdef const float* here = &grey[i, 0]
+    cdef const float* below = &grey[min(grey.shape[0] - 1, i + 1), 0]
+    cdef float* x = out
+    cdef float* y = out + w
+    cdef float* length = out + 2 * w
+    for j in range(w):
+        y[j] = below[j] - above[j]
+    for j in range(1, w - 1):
+        x[j] = across(above[j - 1], above[j + 1], here[j - 1], here[j + 1], below[j - 1], below[j + 1])
+        length[j] = <float>(2.0 * y[j] + (<double>y[j - 1] + <double>y[j + 1]))
+    for end in range(2):
+        j = end * (w - 1)
+        left, right = max(0, j - 1), min(w - 1, j + 1)
+        x[j] = across(above[left], above[right], here[left], here[right], below[left], below[right])
+        length[j] = <float>(2.0 * y[j] + (<double>y[left] + <double>y[right]))
+    for j in range(w):
+        y[j] = length[j]
+        length[j] = sqrtf(y[j] * y[j] + x[j] * x[j])
+
+
+cdef inline float across(float a, float b, float c, float d, float e, float f) noexcept nogil:
+    """The weighted sum of three steps to the right, the middle one twice."""
+    return <float>(2.0 * <double>(d - c) + (<double>(b - a) + <double>(f - e)))
+
+
+cdef inline bint steepest(float x, float y, const float* here, const float* above, const float* below) noexcept nogil:
+    """Whether no length before and behind a pixel, along its gradient, is greater: each between two neighbours'.
+
+    here, above, below: lengths at the pixel, and in the rows beside it.
+    """
+    cdef bint falling = (x > 0 and y < 0) or (x < 0 and y > 0)  # up to the right on the screen
+    cdef float part
+    if fabsf(y) > fabsf(x) or (falling and fabsf(y) == fabsf(x)):
+        part = fabsf(x) / fabsf(y)
+        if falling:
+            return least_between(above[0], above[1], part, here[0]) and least_between(
+                below[0], below[-1], part, here[0]
+            )
+        return least_between(below[0], below[1], part, here[0]) and least_between(above[0], above[-1], part, here[0])
+    part = fabsf(y) / fabsf(x)
+    if falling:
+        return least_between(here[1], above[1], part, here[0]) and least_between(here[-1], below[-1], part, here[0])
+    return least_between(here[1], below[1], part, here[0]) and least_between(here[-1], above[-1], part, here[0])
+
+
+cdef inline bint least_between(float one, float other, float part, float most) noexcept nogil:
+    """Whether what lies at that part of the way from one to the other is not more than that."""
+    return other * part + one * (1.0 - part) <= most
