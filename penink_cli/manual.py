@@ -1,4 +1,4 @@
-"""What follows from registries and help texts: man pages, shell completion, the README's table, packed textures.
+"""What follows from registries and help texts: man pages, completion, the README's table, names in schemas, textures.
 
 ``python -m penink_cli.manual`` writes them, the first two into penink_cli/share, whence they are installed.
 """
@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import gzip
 import inspect
+import json
 import os
 import re
 import sys
@@ -17,6 +18,7 @@ from pathlib import Path
 import click
 from click.shell_completion import BashComplete, FishComplete, ShellComplete, ZshComplete
 
+from penink_cli.ground.rules import RULES
 from penink_cli.main import SUBCOMMANDS, penink
 
 _COMMON = r"""
@@ -151,12 +153,19 @@ def filter_table() -> str:
 
 def derived() -> Iterator[tuple[Path, str]]:
     """Files of the project of which a part follows from the registries, where they are, and their whole text."""
+    schema = Path(__file__).parent / "formats" / "schemas" / "illustration.schema.json"
+    yield schema, _enumerated(schema.read_text("utf-8"))
     readme = Path(__file__).parent.parent / "README.md"
     if readme.exists():  # not where the package is installed
         text = readme.read_text("utf-8")
         head, rest = text.split("<!-- the filters, by `make manual` -->\n\n", 1)
         _, tail = rest.split("\n\n", 1)
         yield readme, f"{head}<!-- the filters, by `make manual` -->\n\n{filter_table()}\n\n{tail}"
+
+
+def _enumerated(schema: str) -> str:
+    """The schema of illustrations with the names of all rules."""
+    return re.sub(r'(?<="rule": \{ "enum": )\[[^]]*\]', json.dumps(list(RULES)), schema)
 
 
 def main() -> None:

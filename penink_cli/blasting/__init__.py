@@ -1,7 +1,9 @@
 """The paper's section 3: a grey image and a stroke texture to pen strokes of the same tone.
 
-    blast.blast
+    blast.blast             what is to be drawn as a Task, for a rule of rules/
+    task.Begun              the sheet with what is on it already
       marks                 small dark things on bare paper, filled first
+    rules/
       hatching.hatch_sheet  textures of layers: a closed loop on the tone
         shares              what each layer owes
         sweep, candidates   straight lines; or along a field

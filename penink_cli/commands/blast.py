@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from penink_cli.ground.rules import RULES
 from penink_cli.ground.streams import writing
 from penink_cli.options.common import (
     LENGTH,
@@ -36,8 +37,6 @@ from penink_cli.options.textures import find_texture, texture_option
 if TYPE_CHECKING:
     from penink_cli.ground.model import Floats, Texture
 
-RULES = ("best", "strict", "threshold", "engrave")
-
 
 @click.command()
 @texture_option
@@ -64,11 +63,10 @@ RULES = ("best", "strict", "threshold", "engrave")
 )
 @click.option(
     "--rule",
-    type=click.Choice(RULES),
+    type=click.Choice(list(RULES)),
     default="best",
     show_default=True,
-    help="best: true tone. strict: the paper's rule. threshold: each stroke where the tone exceeds its own. "
-    "engrave: lines that swell, whatever the texture.",
+    help=" ".join(f"{name}: {what}." for name, what in RULES.items()),
 )
 @click.option(
     "--directions",
@@ -127,6 +125,7 @@ def blast(
     """
     from penink_cli.blasting.blast import TICKS
     from penink_cli.blasting.blast import blast as blast_tone
+    from penink_cli.blasting.rules import rule as find_rule
     from penink_cli.formats import strokes as strokes_format
     from penink_cli.ground.model import Strokes
     from penink_cli.illustration.drawing import tone_curve
@@ -149,7 +148,7 @@ def blast(
     tone = tone_curve(image, gamma)
     for line in warnings(tone, texture, pen, device_dpi):
         warn(line)
-    if directions and not follows(texture, rule):
+    if directions and not find_rule(rule).follows(texture):
         why = 'by the rule "best" one with hatching layers or a set is, save straight engravings'
         warn(f"{texture.name} is not drawn along directions: {why}")
     with progress(TICKS, "blasting", quiet) as more:
@@ -174,15 +173,6 @@ def blast(
         reporter(verbose)(f"{len(strokes)} strokes of {texture.name}, {pens} wide, on {width_pt:g} x {height_pt:g} pt")
     with writing(output, binary=False) as out:
         strokes_format.write(out, strokes)
-
-
-def follows(texture: Texture, rule: str) -> bool:
-    """Whether strokes of a texture run along a field of directions where there is one."""
-    if texture.oriented:
-        return True
-    if rule == "engrave" or (rule == "best" and texture.engraving):
-        return texture.engraving is None or texture.engraving.along
-    return rule == "best" and bool(texture.layers)
 
 
 def warnings(tone: Floats, texture: Texture, pen: float | None, device_dpi: float | None) -> list[str]:

@@ -288,10 +288,11 @@ class _Drawing:
 
     def follows(self) -> bool:
         """Whether the strokes of the texture can follow a field."""
-        from penink_cli.commands.blast import follows
+        from penink_cli.blasting.rules import rule
 
         blast = self.stages["blast"]
-        return follows(find_texture(str(blast.get("texture", "crosshatch"))), str(blast.get("rule", "best")))
+        texture = find_texture(str(blast.get("texture", "crosshatch")))
+        return bool(rule(str(blast.get("rule", "best"))).follows(texture))
 
     def over(self, size: tuple[int, int], edges: str, lines: str | None) -> list[str]:
         """Strokes over the hatching, which are ink before it is laid."""

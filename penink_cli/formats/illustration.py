@@ -33,6 +33,7 @@ from penink_cli.ground.model import (
     OutlineChoice,
     Texture,
 )
+from penink_cli.ground.rules import RULES
 
 FORMAT = "penink-illustration"
 MANIFEST = "illustration.json"  # its name within an archive
@@ -41,7 +42,6 @@ MAX_LAYERS = 64
 MAX_SIZE = 144_000.0  # points
 MAX_PEN = 72.0
 LEVELS = 24  # of grey, unless a layer says another number: what ink shows of more is nothing
-RULES = ("best", "strict", "threshold", "engrave")
 
 _SHIPPED = re.compile(r"[a-z0-9_-]{1,60}", re.ASCII)
 

@@ -1,0 +1,55 @@
+"""True tone in a closed loop, each texture in the way that suits it."""
+
+from __future__ import annotations
+
+from penink_cli.blasting import hatching, stroke_set, tile
+from penink_cli.blasting.rules import engrave
+from penink_cli.blasting.task import Begun, Task
+from penink_cli.ground.model import Strokes, Texture
+
+SETS = True
+
+
+def follows(texture: Texture) -> bool:
+    """Sets, hatching layers, and engravings save straight ones."""
+    if texture.engraving is not None and not texture.oriented:
+        return texture.engraving.along
+    return texture.oriented or bool(texture.layers)
+
+
+def draw(task: Task) -> Strokes:
+    """Sets along the field, lines that swell, hatching by layers, or copies of the tile."""
+    begun = Begun(task)
+    texture = task.texture
+    if texture.oriented:
+        strokes = _set(task, begun)
+    elif texture.engraving is not None and task.pen_pt is None:
+        strokes = engrave.engraved(task, begun)
+    elif texture.layers:
+        strokes = hatching.hatch_sheet(
+            begun.sheet, texture.layers, task.edges, task.gain, task.seed, task.pen_pt, task.tick, begun.field(),
+            begun.told,
+        )  # fmt: skip
+    else:
+        strokes = _tile(task, begun)
+    return begun.with_small(strokes)
+
+
+def _set(task: Task, begun: Begun) -> Strokes:
+    examples = task.texture.strokes
+    return hatching.hatch_sheet(
+        begun.sheet, stroke_set.passes(examples), task.edges, task.gain, task.seed, task.pen_pt, task.tick,
+        begun.field() or begun.one_angle(), begun.told, examples,
+    )  # fmt: skip
+
+
+def _tile(task: Task, begun: Begun) -> Strokes:
+    sheet, texture = begun.sheet, task.texture
+    enters = tile.thresholds(texture, task.gain)
+    parts = tile.blast_tile(sheet, texture, task.edges, enters, task.seed, False, task.pen_pt, task.tick)
+    strokes = Strokes.joined([Strokes(task.width_pt, task.height_pt), *parts])
+    if task.pen_pt is None and len(strokes):
+        sheet.clear()  # the best round may not have been the last
+        hatching.paint(sheet, strokes)
+        strokes = hatching.press(sheet, strokes, task.seed, tile.crowd(sheet, texture))
+    return strokes

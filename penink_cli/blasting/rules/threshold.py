@@ -1,0 +1,24 @@
+"""Each stroke wherever the tone exceeds the one at which its texture has it enter.
+
+That is what an illustration that draws itself does on a device. It knows no seed.
+"""
+
+from __future__ import annotations
+
+from penink_cli.blasting.task import Task
+from penink_cli.blasting.threshold import blast_by_threshold
+from penink_cli.ground.model import Strokes, Texture
+
+SETS = False
+
+
+def follows(texture: Texture) -> bool:
+    """A device is sent no field."""
+    return False
+
+
+def draw(task: Task) -> Strokes:
+    """The strokes of the texture's screens."""
+    return blast_by_threshold(
+        task.tone, task.width_pt, task.height_pt, task.edges, task.texture, task.pen_pt, task.device_dpi, task.outlines
+    )

@@ -1,0 +1,94 @@
+"""What a rule is given to draw, and how a drawing on a sheet begins."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from penink_cli.blasting import hatching, marks
+from penink_cli.blasting.sheet import Cells, Sheet, coverage
+from penink_cli.ground.angles import direction
+from penink_cli.ground.device import MEAN
+from penink_cli.ground.model import Directions, EdgeList, Floats, Strokes, Texture
+
+#: The broadest pen that small dark things are filled with.
+MARK_PT = 0.5
+#: Cells of which so much lies within a point of a small dark thing belong to it.
+NEAR_MARK = 0.3
+#: Degrees at which a set of strokes lies where no directions are given.
+ANGLE = -45.0
+
+
+@dataclass(frozen=True)
+class Task:
+    """The arguments of `blast.blast`, which tells them.
+
+    told: where telling lines keep hatching away, (rows, columns) cells of the sheet, or None.
+    """
+
+    tone: Floats
+    width_pt: float
+    height_pt: float
+    edges: EdgeList | None
+    texture: Texture
+    seed: int
+    pen_pt: float | None
+    device_dpi: float | None
+    outlines: Strokes | None
+    directions: Directions | None
+    told: npt.NDArray[np.bool_] | None
+    threads: int
+    tick: Callable[[], None]
+
+    @property
+    def gain(self) -> float:
+        """A dot of the printer, points; 0 where nothing is gained."""
+        return 72.0 / self.device_dpi if self.device_dpi else 0.0
+
+
+class Begun:
+    """A sheet on which the strokes that are there already and small dark things have been drawn.
+
+    small: the strokes of those. told: cells (rows, columns) that hatching keeps away from thin things in, or None.
+    """
+
+    def __init__(self, task: Task):
+        self.task = task
+        texture, gain = task.texture, task.gain
+        self.sheet = Sheet(task.tone, task.width_pt, task.height_pt, gain, task.threads)
+        if task.outlines is not None:
+            hatching.draw_first(self.sheet, task.outlines)
+        finest = task.pen_pt or min(
+            [*texture.strokes.widths.tolist(), *(layer.pen_pt for layer in texture.layers), MARK_PT]
+        )
+        self.small = marks.marks(
+            task.tone, task.width_pt, task.height_pt, finest, MEAN * gain, task.pen_pt is not None, self.sheet.ink
+        )
+        hatching.draw_first(self.sheet, self.small)
+        self.told = task.told
+        if len(self.small):  # nor are they thin things to be drawn along
+            near = coverage(self.small, self.sheet.rows, self.sheet.columns, 2.0) > NEAR_MARK
+            self.told = near if self.told is None else self.told | near
+
+    def field(self) -> tuple[Cells, Cells] | None:
+        """Cosine and sine of twice the angle of the task's field in each cell, (rows, columns); None without one."""
+        task, sheet = self.task, self.sheet
+        if task.directions is None:
+            return None
+        from penink_cli.directions.reading import at_size  # the reconstruction is not needed otherwise
+
+        field = at_size(task.directions, task.edges, sheet.rows, sheet.columns, sheet.threads)
+        return np.asarray(field.cos2, np.float32), np.asarray(field.sin2, np.float32)
+
+    def one_angle(self) -> tuple[Cells, Cells]:
+        """The same for a field of which nothing is known: one angle everywhere, as of plain hatching."""
+        c, s = direction(2 * ANGLE)
+        whole = np.ones((self.sheet.rows, self.sheet.columns), np.float32)
+        return whole * np.float32(c), whole * np.float32(s)
+
+    def with_small(self, strokes: Strokes) -> Strokes:
+        """The strokes, on those of small dark things."""
+        return Strokes.joined([self.small, strokes]) if len(self.small) else strokes
