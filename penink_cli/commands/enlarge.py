@@ -6,9 +6,10 @@ import math
 
 import click
 
+from penink_cli.ground.errors import LimitError
 from penink_cli.ground.streams import writing
 from penink_cli.options.common import POSITIVE, SIZE, WINDOW, edges_option, filter_options, threads_option
-from penink_cli.options.inputs import only_one_standard_input, read_edges, read_grey
+from penink_cli.options.inputs import enlarged_limit, only_one_standard_input, read_edges, read_grey
 
 MOST = 2**31 - 1  # pixels along a side of the output
 
@@ -75,6 +76,8 @@ def enlarge(
             raise click.UsageError(f"--scale {scale:g} of {w} x {h} samples is more than {MOST} pixels along a side")
         size = max(1, math.floor(w * scale + 0.5)), max(1, math.floor(h * scale + 0.5))
     _, _, width, height = check_window(window, *size)
+    if width * height > (most := enlarged_limit(max_pixels)):
+        raise LimitError(f"{width} x {height} pixels are asked for; at most {most} are allowed (--max-pixels)")
     maxval = maxval or samples.maxval
     with writing(output) as out, progress(height, "enlarge", quiet) as advance:
         out.write(pgm.header(width, height, maxval))

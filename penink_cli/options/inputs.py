@@ -131,6 +131,13 @@ def photo_limit(max_pixels: int) -> int:
     return max(PHOTO_PIXELS, MAX_PIXELS)
 
 
+def enlarged_limit(max_pixels: int) -> int:
+    """The pixels of an enlarged image, read or written: by --max-pixels, or what the chain makes of a photograph."""
+    context = click.get_current_context()
+    chosen = context.get_parameter_source("max_pixels") is not ParameterSource.DEFAULT
+    return max_pixels if chosen else ENLARGED_PIXELS
+
+
 def read_grey(path: str | None, max_pixels: int) -> GreyImage:
     """Grey samples from a PGM file."""
     from penink_cli.formats import pgm
@@ -146,11 +153,8 @@ def read_to_blast(path: str | None, max_pixels: int) -> GreyImage:
     """
     from penink_cli.formats import pgm
 
-    context = click.get_current_context()
-    chosen = context.get_parameter_source("max_pixels") is not ParameterSource.DEFAULT
     with streams.reading(path) as stream:
-        limit = max_pixels if chosen else ENLARGED_PIXELS
-        return pgm.read_at_most(stream, streams.source_name(path), limit, max_pixels)
+        return pgm.read_at_most(stream, streams.source_name(path), enlarged_limit(max_pixels), max_pixels)
 
 
 @contextmanager
