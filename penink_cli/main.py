@@ -49,6 +49,7 @@ def _outputs(reads: str) -> dict[str, Entry]:
 SUBCOMMANDS = {
     "compose": Entry("photo", "PGM", "Make the grey that a drawing is to have, from a photo."),
     "detect-edges": Entry("photo", "edges", "Find the discontinuity edges of a photograph."),
+    "thin-edges": Entry("edges, photo", "edges", "Leave out the edges that are not worth their bytes."),
     "detect-lines": Entry("photo", "lines", "Find the telling lines of a photograph."),
     "extract-samples": Entry("photo, edges", "PGM", "Take grey samples that no edge has contaminated."),
     "show-edges": Entry("photo, edges", "SVG", "Draw a photograph with its edges, to be looked at."),

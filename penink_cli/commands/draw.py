@@ -41,6 +41,8 @@ OUTLINE_LENGTH = 0.04  # of the photo's longer side: shorter chains are texture,
 COMPOSED_DPI = 288.0  # as `compose` has it
 PRINTER_DPI = 600.0
 POSTER_DPI = 1152.0  # pixels an inch that an illustration is made from: those of a drawing four times as wide
+ARCHIVE = ".penink"
+WORTH = 120.0  # squared grey levels a bit that a chain of edges of an archive saves
 DEVICE_SIDE = 254  # samples a side that a device is sent at the most
 
 # The options that are told to one stage, by their names there.
@@ -232,6 +234,8 @@ class _Drawing:
         photo = [*shlex.split(photo_words()), "-" if file is None else file]
         grey, size = self.composed(photo, shape)
         edges = self.run("detect-edges", [*self.words("edges", "detect-edges"), grey], "e.json")
+        if self.ending == ARCHIVE:
+            edges = self.thinned(edges, grey, size)
         lines = None
         if "lines" in self.stages:
             lines = self.run("detect-lines", [*self.words("lines", "detect-lines"), *photo], "lines.json")
@@ -260,6 +264,15 @@ class _Drawing:
             self.chain.joined([hatching, *over], output)
         else:
             self.chain.run(by, [*page, hatching, *over], output)
+
+    def thinned(self, edges: str, grey: str, size: tuple[int, int]) -> str:
+        """The edges that are worth their bytes, and those that will be outlined."""
+        told = ["--worth", repr(WORTH), "--seen-at", repr(self.width), "--photo", grey]
+        if "outline" in self.stages:
+            choice = self.stages["outline"]
+            told += ["--keep-strength", str(choice.get("min-strength", 0))]
+            told += ["--keep-length", str(choice.get("min-length", _least_length(size)))]
+        return self.run("thin-edges", ["-e", edges, *told], "thin.json")
 
     def composed(self, photo: list[str], shape: tuple[int, ...]) -> tuple[str, tuple[int, int]]:
         """The grey of the drawing, and its width and height."""

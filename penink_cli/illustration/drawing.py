@@ -8,7 +8,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from penink_cli.ground.errors import ParameterError
 from penink_cli.ground.model import EdgeList, Floats, GreyImage, LineChoice, Lines, OutlineChoice, Strokes, Texture
 
 PIXELS_PER_PT = 2.0  # of the grey that is blasted: half the distance between the closest strokes

@@ -2,6 +2,7 @@
 
     extraction   photo, edges → one clean sample a pixel
     reduction    samples → fewer, each of what it can reach; fit → whose reconstruction is the photo
+    thinning     the edges that are worth their bytes
     grid         the smallest grid that serves
     enlarge      samples, edges → rows of any size
       paths.Paths           once: cells, scene (who sees whom), nodes (where paths bend), search (shortest paths)

@@ -39,7 +39,7 @@ MAX_SEEN_ERROR = 3.5 / 255  # of what a drawing at a size shows
 SEEN_PT = 1.0  # σ of the blur: hatching shows nothing finer
 # Smaller regions are specks that no stroke can show: 4 x 4 pixels of 512 x 512, however finely the photo is resolved.
 LEAST_REGION, LEAST_REGION_PX = 1 / 16384, 16  # of the picture, and at least so many pixels
-_VIEW_PX = 1_000_000
+VIEW_PX = 1_000_000
 _LEAST_SIDE = 32  # samples; below that a cell holds too much of the picture
 _RUNG = 50  # the error is tried of grids that differ by a sample a side, or by 1/50 where that is more
 _POWER = 0.6  # of the side by which the error falls, where only one is known
@@ -111,7 +111,7 @@ def choose_grid(
     exact = _View(seen, 0.0, POINT, shown)
     if photo is not None:
         exact = _View(seen, camera_blur(seen, edges), AREA, shown)
-    quick = exact.smaller(_VIEW_PX)
+    quick = exact.smaller(VIEW_PX)
     regions = _Regions(edges, *seen.shape)
     long = max(width, height)
     ladder = _ladder(-(-_LEAST_SIDE * long // min(width, height)), long)

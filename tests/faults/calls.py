@@ -35,6 +35,7 @@ OWN = {
     "compose": Call("photo.png", ("--width", "0.35in")),
     "detect-edges": Call("photo.png"),
     "detect-directions": Call("photo.png", ("-e", "photo.edges.json", "--strokes", "photo.strokes.jsonl")),
+    "thin-edges": Call("photo.edges.json", ("--photo", "photo.png")),
     "reduce": Call("samples.pgm", ("-e", "photo.edges.json", "--factor", "2")),
     "enlarge": Call("samples.pgm", ("-e", "photo.edges.json", "--scale", "3")),
     "blast": Call("samples.pgm", ("--texture", "crosshatch", "--width", "0.35in", "-e", "photo.edges.json")),

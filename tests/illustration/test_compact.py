@@ -106,7 +106,7 @@ def hidden_by_formula(edges: EdgeList, w: int, h: int) -> np.ndarray:
     for i in range(h):
         for j in range(w):
             for k, (dx, dy) in enumerate([(-1, 0), (0, -1), (-1, -1), (1, -1), (-2, 0), (0, -2)]):
-                if not (0 <= j + dx < w and 0 <= i + dy):
+                if not (0 <= j + dx < w and i + dy >= 0):
                     continue
                 p, q = (16 * j + 8, 16 * i + 8), (16 * (j + dx) + 8, 16 * (i + dy) + 8)
                 for a, b in ((at[a], at[b]) for a, b in edges.edges):

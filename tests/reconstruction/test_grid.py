@@ -32,7 +32,7 @@ def test_the_grid_of_a_large_photo_is_found_in_a_smaller_view_of_it(noise, monke
     grey = picture(480) + np.random.default_rng(2).normal(0, noise, (480, 480)).astype(np.float32)
     limit = 2.2 / 255
     slow = choose_grid(picture(480), EdgeList(480, 480), limit, photo=grey)
-    monkeypatch.setattr(grid, "_VIEW_PX", 20_000)
+    monkeypatch.setattr(grid, "VIEW_PX", 20_000)
     seen = []
     plain = grid.remaining_error
     monkeypatch.setattr(grid, "remaining_error", lambda *a: (seen.append(a[2].shape), plain(*a))[1])
@@ -111,7 +111,7 @@ def test_what_cannot_be_kept_is_an_error():
 
 def test_a_grid_may_be_finer_than_the_view_it_is_judged_by(monkeypatch):
     """Where a large photo is so busy that no coarse grid serves."""
-    monkeypatch.setattr(grid, "_VIEW_PX", 500)
+    monkeypatch.setattr(grid, "VIEW_PX", 500)
     noise = np.random.default_rng(3).uniform(0, 1, (60, 90)).astype(np.float32)
     edges = EdgeList(90, 60, np.array([[20.0, 20], [60, 40]]), np.array([[0, 1]]))
     with pytest.raises(ParameterError, match=r"0\.50 are allowed \(--max-error\)"):

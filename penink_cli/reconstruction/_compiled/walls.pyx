@@ -48,8 +48,15 @@ def block(double[::1] ax, double[::1] ay, double[::1] bx, double[::1] by, unsign
                 j += 1
 
 
-def near(double[::1] ax, double[::1] ay, double[::1] bx, double[::1] by, double margin, float[:, ::1] distance) -> None:
-    """Lower `distance` (h, w) to the distance from pixel centres to edges, where it is at most margin."""
+def near(
+    double[::1] ax, double[::1] ay, double[::1] bx, double[::1] by, double margin, float[:, ::1] distance,
+    int[:, ::1] nearest=None,
+) -> None:
+    """Lower `distance` (h, w) to the distance from pixel centres to edges, where it is at most margin.
+
+    nearest: (h, w) of which edge that is, or None.
+    """
+    cdef bint told = nearest is not None
     cdef Py_ssize_t e, i, j
     cdef double x0, y0, dx, dy, px, py, length, along, left, right, slope, found, low, high
     cdef Py_ssize_t height = distance.shape[0]
@@ -92,7 +99,9 @@ def near(double[::1] ax, double[::1] ay, double[::1] bx, double[::1] by, double 
                         py -= along * dy
                         found = sqrt(px * px + py * py)
                         if found <= margin and found < distance[i, j]:
-                            distance[i, j] = found
+                            distance[i, j] = <float>found
+                            if told:
+                                nearest[i, j] = <int>e
                         j += 1
                 i += 1
 
