@@ -124,7 +124,7 @@ def _saved(
     there = nearest >= 0
     totals: Ints = np.zeros(len(chains), np.int64)
     np.add.at(totals, chain_of[nearest[there]], saved[there])
-    return totals * (PICTURE_PX / photo.size / _PARTS)
+    return totals.astype(np.float64) * (PICTURE_PX / photo.size / _PARTS)
 
 
 def _difference(
