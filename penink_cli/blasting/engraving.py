@@ -24,8 +24,9 @@ from penink_cli.blasting.level_lines import Lines, level_lines
 from penink_cli.blasting.low_pass import LowPass
 from penink_cli.blasting.phase import Field, Nodes, Plane, solve
 from penink_cli.blasting.sheet import CELL_PT, EYE_PT, Cells, Sheet, halve
+from penink_cli.blasting.taking_turns import LEVELS, distances, levels
 from penink_cli.ground.angles import direction
-from penink_cli.ground.device import EDGE
+from penink_cli.ground.device import FILLED
 from penink_cli.ground.model import EdgeList, Engraving, Floats, Ints, Strokes
 
 Mask = npt.NDArray[np.bool_]
@@ -36,18 +37,28 @@ ROUNDS, CORRECTION = 6, 0.7
 REACH = (-0.3, 1.3)
 #: Tone from which on lines close up, and how wide they are in parts of their distance where it is black.
 MOST, CLOSED = 0.97, 1.5
-#: Dashes: least length, and the longest stretch of line that holds one of them; below this tone there are none.
-DASH_PT, PERIOD_PT, LONGEST_PERIOD_PT, LEAST_TONE = 2.4, 6.0, 40.0, 0.004
+#: Dashes and the gaps between them: length, so far as the shortest and longest stretch of line that holds one of each
+#: allow; the least gap; below this tone there are no dashes.
+DASH_PT, GAP_PT, PERIOD_PT, LONGEST_PERIOD_PT, LEAST_GAP_PT, LEAST_TONE = 3.0, 5.0, 12.0, 40.0, 0.7, 0.004
+#: Whether a line breaks up is decided by the mean over so many samples each way; not where it is so many times as dark.
+CALM, SURELY = 5, 1.6
 #: Knots are about so far apart, points; lines are sampled this many times as finely.
 KNOT_PT = 2.0
 #: Free ends taper to this width over so many points, or a share of a short stroke, but the less the darker it is from
 #: this width on, in parts of the lines' distance: among dark lines a point leaves a speck of white.
 TIP_PT, TAPER_PT, TAPER_SHARE, BLUNT = 0.05, 6.0, 0.4, 0.6
+#: Where a line goes on after a gap, points are no longer than so many times the gap.
+TAPER_GAP = 1.2
 #: Lines shorter than this are left out.
 SHORTEST_PT = 2.0
 #: Lines come as near to the frame as those of such a pen do. Along it, so far within, runs one that fills what their
 #: round ends leave, where it is darker than this.
 FRAME_PEN_PT, RIM_PT, RIM_TONE = 1.15, 0.4, 0.6
+#: Lines along a field are moved so many times by such a part of how much further they are from one neighbour.
+EVENINGS, EVENED = 5, 0.18
+#: Their ends are prolonged by so many samples at the most, while lines there are as far apart as this part of their
+#: distance.
+PROLONGED, ROOM = 5, 0.78
 #: Wavering lines: how far, and how far apart the places are between which they waver.
 WAVER_PT, WAVER_LENGTH_PT = 2.5, 9.0
 
@@ -58,7 +69,7 @@ class Tracks:
 
     points: (p, 2). first: (n + 1,). step: (n,) distance of samples. bounded: (n, 2) whether an end is at an edge or
     the frame. rim: (n,) whether it is a line along the frame. across: (p,) what a device adds to a line's width there,
-    points.
+    points. ahead: (p, 2) directions. level, apart: (p,) see `levels` and `distances` in `taking_turns`.
     """
 
     points: Floats
@@ -67,6 +78,9 @@ class Tracks:
     bounded: Mask
     rim: Mask
     across: Floats
+    ahead: Floats
+    level: npt.NDArray[np.int8]
+    apart: Floats
 
 
 def engrave(
@@ -98,15 +112,14 @@ def engrave(
         tick()
         strokes = _strokes(sheet, engraving, spacing, tracks, wanted, begin)
         sheet.clear()
-        _ink(sheet, strokes)
+        sheet.swell(strokes)
         missing = sheet.tone - sheet.ink
         error = eye(halve(missing)) / seen
         size = float(np.mean(np.square(error, dtype=np.float64)))
         if best is None or size < best[0]:
             best = size, strokes
         if turn < ROUNDS - 1:
-            mean = float(np.mean(error, dtype=np.float64))  # what small dark things cannot hold goes to all others
-            wanted = wanted + CORRECTION * (sheet.spread(error).astype(np.float64) + 0.4 * mean)
+            wanted = wanted + CORRECTION * sheet.spread(error).astype(np.float64)
             wanted = np.clip(wanted, *REACH)
     assert best is not None
     return best[1]
@@ -130,7 +143,60 @@ def _tracks(
         asked, phase = _known(nodes, engraving, spacing, sheet, seed)
     lines = pen_lines.evened(level_lines(asked, phase, 0.0, sheet.each), SHORTEST_PT)
     pen_lines.smooth(lines, np.full(len(lines.points), max(spacing, 3.0)))
-    return _cut(sheet, lines, borders, spacing)
+    if field is not None and engraving.along:
+        lines = _evened_out(lines, spacing)
+    return _cut(sheet, lines, borders, spacing, engraving.finest_pt)
+
+
+def _evened_out(lines: Lines, spacing: float) -> Lines:
+    """Lines moved to about the middle between their neighbours, ends prolonged between two that close up.
+
+    So where a line ends, what is white beside it is a point and no gap.
+    """
+    lines = _prolonged(lines)
+    points = lines.points
+    for _ in range(EVENINGS):
+        points, _, _ = _moved(points, lines.first, spacing)
+    # of what was added that is kept which has room
+    _, apart, both = _moved(points, lines.first, spacing)
+    sizes = np.diff(lines.first)
+    at = curves.ramp(sizes)
+    back = np.repeat(sizes, sizes) - 1 - at
+    inner = np.where(np.repeat(lines.ring, sizes), PROLONGED, np.minimum(at, back))
+    kept = (inner >= PROLONGED) | (both & (apart > ROOM * spacing))
+    for out in range(PROLONGED - 1, -1, -1):
+        for place, step in ((at, 1), (back, -1)):
+            these = np.flatnonzero((place == out) & (inner == out))
+            kept[these] &= kept[these + step]
+    sizes = np.add.reduceat(kept.astype(np.int64), lines.first[:-1]) if len(sizes) else sizes
+    points, first = points[kept], curves.starts(sizes)
+    for _ in range(EVENINGS):
+        points, _, _ = _moved(points, first, spacing)
+    return Lines(points, first, lines.ring)
+
+
+def _moved(points: Floats, first: Ints, spacing: float) -> tuple[Floats, Floats, Mask]:
+    """Lines moved towards the middle between their neighbours; and what `distances` tells of them before."""
+    ahead = _ahead(points, first)
+    normals = np.column_stack([-ahead[:, 1], ahead[:, 0]])
+    apart, more, both = distances(points, first, normals, spacing)
+    return points + normals * (EVENED * _mean_along(more, first, 4))[:, None], apart, both
+
+
+def _prolonged(lines: Lines) -> Lines:
+    """Lines with so many more samples straight on at the ends of those that are no rings."""
+    sizes = np.diff(lines.first)
+    more = np.where(lines.ring, 0, PROLONGED)
+    first = curves.starts(sizes + 2 * more)
+    at = curves.ramp(sizes + 2 * more) - np.repeat(more, sizes + 2 * more)
+    which = np.repeat(np.arange(len(sizes)), sizes + 2 * more)
+    last = sizes[which] - 1
+    inside = np.clip(at, 0, last)
+    beyond = (at - inside)[:, None]
+    points = np.asarray(lines.points, np.float64)
+    ahead = _ahead(points, lines.first)[lines.first[which] + inside]
+    step = pen_lines.STEP_PT
+    return Lines(points[lines.first[which] + inside] + ahead * (beyond * step), first, lines.ring)
 
 
 def _known(nodes: Nodes, engraving: Engraving, spacing: float, sheet: Sheet, seed: int) -> tuple[Field, Plane]:
@@ -175,7 +241,7 @@ def _slope(values: Plane, axis: int) -> Floats:
     return np.asarray((high - low) / 2, np.float64)
 
 
-def _cut(sheet: Sheet, lines: Lines, borders: walls.Walls, spacing: float) -> Tracks:
+def _cut(sheet: Sheet, lines: Lines, borders: walls.Walls, spacing: float, finest_pt: float) -> Tracks:
     """Lines cut at walls, sampled anew."""
     lines, inner = _with_rim(sheet, lines)
     n = len(lines.ring)
@@ -200,8 +266,16 @@ def _cut(sheet: Sheet, lines: Lines, borders: walls.Walls, spacing: float) -> Tr
     legs[first[1:] - 1] = 0.0
     step = np.add.reduceat(legs, first[:-1]) / steps if len(steps) else np.zeros(0)
     ahead = _ahead(points, first)
-    across = sheet.gain_pt * EDGE * np.abs(ahead).sum(axis=1)
-    return Tracks(points, first, step, np.column_stack([bounded & 1, bounded & 2]) > 0, curve >= inner, across)
+    across = sheet.gain_pt * FILLED * np.abs(ahead).sum(axis=1)
+    rim = curve >= inner
+    light = 1 - np.clip(_at_points(sheet, sheet.tone, points) * spacing / (2 * (finest_pt + across)), 0.0, 1.0)
+    light = np.where(rim[which], 0.0, light)
+    normals = np.column_stack([-ahead[:, 1], ahead[:, 0]])
+    level = levels(points, first, normals, light, spacing)
+    apart = _mean_along(distances(points, first, normals, spacing)[0], first, 2)
+    return Tracks(
+        points, first, step, np.column_stack([bounded & 1, bounded & 2]) > 0, rim, across, ahead, level, apart
+    )
 
 
 def _with_rim(sheet: Sheet, lines: Lines) -> tuple[Lines, int]:
@@ -226,12 +300,15 @@ def _along(points: Floats, origin: Ints, at: Floats, last: Ints) -> Floats:
 
 def _ahead(points: Floats, first: Ints) -> Floats:
     """Unit vectors along polylines at their samples."""
-    before, after = np.arange(len(points)) - 1, np.arange(len(points)) + 1
-    before[first[:-1]] = first[:-1]
-    after[first[1:] - 1] = first[1:] - 1
-    chord = points[after] - points[before]
-    length = np.sqrt((chord * chord).sum(axis=1))[:, None]
-    return chord / np.maximum(length, 1e-9)
+    chord = np.zeros_like(points)
+    if len(points) > 2:
+        np.subtract(points[2:], points[:-2], out=chord[1:-1])
+    start, end = first[:-1], first[1:] - 1
+    chord[start] = points[np.minimum(start + 1, end)] - points[start]
+    chord[end] = points[end] - points[np.maximum(end - 1, start)]
+    x, y = chord[:, 0], chord[:, 1]
+    chord /= np.maximum(np.sqrt(x * x + y * y), 1e-9)[:, None]
+    return chord
 
 
 # ------------------------------------------------------------------- widths
@@ -244,21 +321,51 @@ def _strokes(
     which = np.repeat(np.arange(len(tracks.step)), np.diff(tracks.first))
     tone = _at_points(sheet, wanted, tracks.points)
     tone = _smoothed(tone, tracks.first)
-    finest = (engraving.finest_pt + tracks.across) / spacing
-    # dashes: the share of the line that is drawn, and how often
-    duty = np.clip(tone / finest, 0.0, 1.0)
-    period = np.clip(DASH_PT / np.maximum(duty, 1e-3), PERIOD_PT, LONGEST_PERIOD_PT)
-    drawn = (duty >= 1) | ((_saw(tracks, which, period, begin) < duty) & (tone > LEAST_TONE))
-    width = np.clip(tone, finest, MOST) * spacing - tracks.across
+    finest = (engraving.finest_pt + tracks.across) / tracks.apart
+    width = np.clip(tone, finest, MOST) * tracks.apart - tracks.across
     # and on, from where white hardly shows, until none is left
-    width = width + np.clip((tone - MOST) / (1 - MOST), 0.0, 1.0) * (CLOSED * spacing - width)
+    width = width + np.clip((tone - MOST) / (1 - MOST), 0.0, 1.0) * (CLOSED * tracks.apart - width)
     width = _smoothed(width, tracks.first)
+    duty, saw = _dashes(engraving, tracks, which, tone, finest, begin)
     rim = tracks.rim[which]
     dark = np.clip((tone - RIM_TONE) / (1 - RIM_TONE), 0.0, 1.0)
     room = np.minimum(tracks.points, (sheet.width, sheet.height) - tracks.points).min(axis=1)
-    drawn = np.where(rim, dark > 0.05, drawn)
+    duty = np.where(rim, np.where(dark > 0.05, 1.0, 0.0), duty)
     width = np.minimum(np.where(rim, 2 * RIM_PT * dark, width), np.maximum(2 * room - 0.1, 0.1))
-    return _runs(sheet, engraving, spacing, tracks, which, drawn, width)
+    return _runs(sheet, engraving, spacing, tracks, which, duty, saw, width)
+
+
+def _dashes(
+    engraving: Engraving, tracks: Tracks, which: Ints, tone: Floats, finest: Floats, begin: Floats
+) -> tuple[Floats, Floats]:
+    """What part (p,) of the line is drawn, where the finest line would be darker than the tone (p,); and the saw.
+
+    Of two neighbours one goes on while the other breaks up and leaves off, of those that are left one, and so on. A
+    line is drawn where its saw is below its part; that allows for what dashes lose by their pointed ends.
+    """
+    share = _mean_along(tone / finest, tracks.first, CALM)
+    halved = 2.0 ** np.where(tracks.level > 0, tracks.level, LEVELS)
+    share = np.clip(share * halved - (tracks.level > 0), 0.0, 1.0)
+    period = np.maximum(DASH_PT / np.maximum(share, 1e-3), GAP_PT / np.maximum(1 - share, 1e-3))
+    period = np.clip(period, PERIOD_PT, LONGEST_PERIOD_PT)
+    duty = share
+    if not engraving.blunt:
+        lost = (engraving.finest_pt - min(TIP_PT, engraving.finest_pt)) / (engraving.finest_pt + tracks.across)
+        gap = period * (1 - share) / (1 + TAPER_GAP * lost)
+        taper = np.minimum(np.minimum(TAPER_PT, TAPER_GAP * gap), TAPER_SHARE * period * share)
+        duty = share + lost * taper / period
+    duty = np.where((1 - duty) * period < LEAST_GAP_PT, 1.0, duty)
+    duty = np.where(tone >= SURELY * finest, 1.0, np.where(tone > LEAST_TONE, duty, 0.0))
+    return duty, _saw(tracks, which, period, begin)
+
+
+def _mean_along(values: Floats, first: Ints, reach: int) -> Floats:
+    """Means over so many samples each way along each polyline, as far as it goes."""
+    total = np.concatenate([[0.0], np.cumsum(values)])
+    who = np.repeat(np.arange(len(first) - 1), np.diff(first))
+    at = np.arange(len(values))
+    low, high = np.maximum(at - reach, first[who]), np.minimum(at + reach + 1, first[who + 1])
+    return np.asarray((total[high] - total[low]) / (high - low), np.float64)
 
 
 def _saw(tracks: Tracks, which: Ints, period: Floats, begin: Floats) -> Floats:
@@ -266,6 +373,15 @@ def _saw(tracks: Tracks, which: Ints, period: Floats, begin: Floats) -> Floats:
     turns = np.cumsum(tracks.step[which] / period)
     turns = turns - turns[tracks.first[:-1]][which] + begin[which]
     return turns - np.floor(turns)
+
+
+def _between(saw: Floats, duty: Floats, at: Ints) -> Floats:
+    """How far from samples `at` to the next a line begins or leaves off, 0 … 1."""
+    before, after = saw[at], saw[at + 1]
+    less, more = np.abs(before - duty[at]), np.abs(after - duty[at + 1])
+    wrapped = after < before
+    less, more = np.where(wrapped, 1 - before, less), np.where(wrapped, after, more)
+    return np.asarray(less / np.maximum(less + more, 1e-9), np.float64)
 
 
 def _smoothed(values: Floats, first: Ints) -> Floats:
@@ -289,9 +405,11 @@ def _at_points(sheet: Sheet, values: Floats, points: Floats) -> Floats:
 
 
 def _runs(
-    sheet: Sheet, engraving: Engraving, spacing: float, tracks: Tracks, which: Ints, drawn: Mask, width: Floats
-) -> Strokes:
+    sheet: Sheet, engraving: Engraving, spacing: float, tracks: Tracks, which: Ints, duty: Floats, saw: Floats,
+    width: Floats,
+) -> Strokes:  # fmt: skip
     """Strokes of the runs of samples that are drawn, a knot every `KNOT_PT` or so, their free ends tapered."""
+    drawn = (saw < duty) & (duty > 0)
     key = np.concatenate([[-1], np.where(drawn, which, -1), [-1]])
     change = np.flatnonzero(key[1:] != key[:-1])
     low = change[key[change + 1] >= 0]
@@ -300,9 +418,11 @@ def _runs(
     high = change[np.searchsorted(change, low) + 1] - 1
     track = which[low]
     begin, end = tracks.first[track], tracks.first[track + 1] - 1
-    # half a step beyond the samples drawn, within the track
-    a = np.maximum(low - 0.5, begin) - begin
-    b = np.minimum(high + 0.5, end) - begin
+    # on to where the saw is as high as the part to be drawn, within the track
+    a = low - np.where(low > begin, 1 - _between(saw, duty, np.maximum(low - 1, begin)), 0.0) - begin
+    b = high + np.where(high < end, _between(saw, duty, np.minimum(high, end - 1)), 0.0) - begin
+    gap = np.full(len(low) + 1, np.inf)  # before each run
+    gap[1:-1] = np.where(track[1:] == track[:-1], (a[1:] - b[:-1]) * tracks.step[track[1:]], np.inf)
     length = (b - a) * tracks.step[track]
     segments = np.maximum(np.where(length > 1.5, 2, 1), np.rint(length / KNOT_PT)).astype(np.int64)
     first = curves.starts(segments + 1)
@@ -314,14 +434,13 @@ def _runs(
     widths = _along(width[:, None], origin, at, last)[:, 0]
     if not engraving.blunt:
         free = np.column_stack([(low > begin) | ~tracks.bounded[track, 0], (high < end) | ~tracks.bounded[track, 1]])
-        taper = np.minimum(TAPER_PT, TAPER_SHARE * length)[run]
         for side, way in ((0, part), (1, 1 - part)):
+            taper = np.minimum(np.minimum(TAPER_PT, TAPER_SHARE * length), TAPER_GAP * gap[side : len(low) + side])[run]
             inward = np.clip(way * length[run] / np.maximum(taper, 1e-6), 0.0, 1.0)
             inward = np.maximum(inward, np.clip((widths / spacing - BLUNT) / (1 - BLUNT), 0.0, 1.0))
             thin = np.minimum(TIP_PT, widths) * (1 - inward) + widths * inward
             widths = np.where(free[run, side], thin, widths)
-    ahead = _ahead(tracks.points, tracks.first)
-    lean = _along(ahead, origin, at, last)
+    lean = _along(tracks.ahead, origin, at, last)
     third = np.repeat((length / segments)[run] / 3, 1)[:, None]
     points = np.empty((len(knots), 3, 2))
     points[:, 0], points[:, 1], points[:, 2] = knots - lean * third, knots, knots + lean * third
@@ -331,15 +450,3 @@ def _runs(
         sheet.width, sheet.height, points[inner], curves.starts(3 * segments + 1), np.ones(len(low))
     ).swelling(np.maximum(widths, 0.01))
     return strokes.rounded()
-
-
-def _ink(sheet: Sheet, strokes: Strokes) -> None:
-    """Ink the strokes on the sheet, each segment as wide as it is on the average."""
-    if not len(strokes):
-        return
-    segments = np.diff(strokes.first) // 3
-    knot = np.repeat(strokes.first[:-1] - 3 * strokes.knots[:-1], segments + 1) + 3 * np.arange(strokes.knots[-1])
-    at, widths = strokes.points[knot], strokes.at_knots
-    start = np.delete(np.arange(len(at)), strokes.knots[1:] - 1)
-    pairs = np.stack([at[start], at[start + 1]], axis=1).reshape(-1, 2)
-    sheet.paint(curves.Polylines(pairs, 2 * np.arange(len(start) + 1)), (widths[start] + widths[start + 1]) / 2)

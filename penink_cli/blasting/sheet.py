@@ -13,7 +13,7 @@ look-up a sample.
 A device paints every pixel that a stroke touches. It thereby widens a stroke of direction
 θ by (|cos θ| + |sin θ|) of its pixels; `gain_pt` is the size of that pixel, 0 for none.
 
-This module alone imports the compiled kernels `_ink`, `_placing` and `_press`.
+This module alone imports the compiled kernels `_ink`, `_placing`, `_press` and `_swelling`.
 """
 
 from __future__ import annotations
@@ -27,6 +27,7 @@ import numpy.typing as npt
 from penink_cli.blasting._compiled import ink as _ink
 from penink_cli.blasting._compiled import placing as _placing
 from penink_cli.blasting._compiled import press as _press
+from penink_cli.blasting._compiled import swelling as _swelling
 from penink_cli.blasting.curves import Polylines, pieces_of, sample
 from penink_cli.blasting.low_pass import Cells, LowPass
 from penink_cli.ground.model import Floats, Ints, Strokes
@@ -142,6 +143,15 @@ class Sheet:
         points = np.ascontiguousarray(lines.points * self.scale)
         _ink.paint(self.bits, self.columns, points, lines.first, widths * self.pitch, self.gain, fresh)
         return fresh
+
+    def swell(self, strokes: Strokes) -> None:
+        """Ink strokes that swell, as straight from knot to knot."""
+        if not len(strokes):
+            return
+        counts = np.diff(strokes.knots)
+        at = np.repeat(strokes.first[:-1] - 3 * strokes.knots[:-1], counts) + 3 * np.arange(strokes.knots[-1])
+        knots = np.ascontiguousarray(strokes.points[at] * self.scale)
+        _swelling.swell(self.bits, self.columns, knots, strokes.knots, strokes.at_knots * self.pitch, self.gain)
 
     def place(
         self,

@@ -17,6 +17,8 @@ from penink_cli.ground.model import Floats, Strokes
 
 #: Which part of a pixel's width the edges of a stroke gain, times |cos θ| + |sin θ|.
 EDGE = 0.985
+#: The same of a shape that is filled, as strokes that swell are: nothing is lost there.
+FILLED = 1.0
 #: By how many pixels a dot is widened: 1.15 to 1.18 from 0.4 to 2.5 pt.
 DOT = 1.16
 #: The mean over strokes in all directions, pixels.
@@ -33,7 +35,8 @@ def gains(strokes: Strokes, dpi: float) -> Floats:
         return np.zeros(0)
     across = np.add.reduceat(np.abs(steps).sum(axis=1), strokes.first[:-1])
     length = np.add.reduceat(exact.length(steps), strokes.first[:-1])
-    mean: Floats = np.where(length > 0, EDGE * across / np.where(length > 0, length, 1.0), DOT)
+    edge = np.where(strokes.swells, FILLED, EDGE)
+    mean: Floats = np.where(length > 0, edge * across / np.where(length > 0, length, 1.0), DOT)
     return mean * (72 / dpi)
 
 

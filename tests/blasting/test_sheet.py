@@ -8,6 +8,8 @@ import pytest
 from penink_cli.blasting.curves import Polylines
 from penink_cli.blasting.low_pass import LowPass
 from penink_cli.blasting.sheet import CELL_PT, Sheet, halve, resample
+from penink_cli.ground.device import widened
+from penink_cli.ground.model import Strokes
 
 
 def oracle(points, width, sheet):
@@ -112,3 +114,26 @@ def test_resampling_keeps_the_mean_of_what_it_shrinks(shape):
 
 def test_halving_repeats_an_odd_row():
     assert halve(np.array([[1.0, 3.0, 5.0]], np.float32)).tolist() == [[2.0, 5.0]]
+
+
+@pytest.mark.parametrize("gain", [0.0, 0.12])
+def test_strokes_that_swell_ink_what_their_outlines_hold(gain):
+    """Against the outlines that outputs fill, wider by what a device adds."""
+    from penink_cli.outputs.page import lay_out
+    from penink_cli.outputs.raster import cover
+
+    rng = np.random.default_rng(4)
+    points, widths = [], []
+    for y in np.arange(10, 180, 6.0):
+        x = np.arange(10.0, 181.0, 2.0)
+        wave = np.column_stack([x, y + 2 * np.sin(x / 15 + y)])
+        knots = wave[::3]
+        widths.append(np.clip(rng.normal(1.2, 0.6, len(knots)), 0.1, 3))
+        points.append(wave[: 3 * (len(knots) - 1) + 1])
+    first = np.cumsum([0, *map(len, points)])
+    strokes = Strokes(192, 192, np.concatenate(points), first, np.ones(len(points))).swelling(np.concatenate(widths))
+    sheet = Sheet(np.full((8, 8), 0.5), 192, 192, gain)
+    sheet.swell(strokes)
+    wider = widened(strokes, 72 / gain) if gain else strokes
+    page = np.concatenate(list(cover.bands([wider], lay_out([wider]), 300, 255)))
+    assert abs(sheet.ink.mean() - (1 - page.mean() / 255)) < 0.001

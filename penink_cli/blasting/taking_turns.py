@@ -1,0 +1,147 @@
+"""Which lines go on where it is light: of each two neighbours one, of those that are left one again, and so on.
+
+Lines along a field begin and end where they must, so they cannot be counted through. They are looked at in pieces:
+those beside each other are to be on different sides, those that follow each other on one line on the same. Where not
+all can be had, a line leaves off and its neighbour goes on instead, preferably where it is dark and does not show.
+
+This module alone imports the compiled kernel `taking_turns`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from penink_cli.blasting import curves
+from penink_cli.blasting._compiled import taking_turns as _turns
+from penink_cli.ground.model import Floats, Ints
+
+Mask = npt.NDArray[np.bool_]
+
+#: How often one of two is left out: at the most one in so many powers of two remains.
+LEVELS = 3
+#: Samples to a piece, how many neighbours the next piece of the same line outweighs, and the rounds of settling.
+PIECE, ALIKE, ROUNDS = 12, 16.0, 12
+#: Where the next line is looked for, in parts of the distance of lines: from where on, how often; and the cells' width.
+NEAREST, STEP, PROBES, CELL = 0.5, 0.14, 11, 0.4
+#: Lines are taken to be no nearer and no further from each other than so many times their distance.
+LEAST, MOST = 0.4, 2.0
+#: Lines are beside each other where the cosine of their angle is more.
+ALIKE_COSINE = 0.8
+
+
+def levels(points: Floats, first: Ints, normals: Floats, light: Floats, spacing: float) -> npt.NDArray[np.int8]:
+    """(p,) when a line is left out at each sample: 1 the first ones, every second; then 2 …; 0 those that remain.
+
+    points: (p, 2) samples about a point apart; first: where each line's begin; normals: (p, 2) of the lines;
+    light: (p,) how much it matters there, 0 … 1; spacing: of the lines.
+    """
+    counts = np.diff(first)
+    which = np.repeat(np.arange(len(counts)), counts)
+    pieces = np.maximum(1, np.rint(counts / PIECE)).astype(np.int64)
+    number = curves.starts(pieces)
+    piece = number[which] + curves.ramp(counts) * pieces[which] // counts[which]
+    follows = np.ones(int(number[-1]), bool)
+    follows[number[:-1]] = False
+    weight = np.bincount(piece, light, len(follows)) / np.bincount(piece, minlength=len(follows))
+    out = np.zeros(len(follows), np.int8)
+    left = np.ones(len(follows), bool)
+    for level in range(1, LEVELS + 1):
+        sides = _sides(points, normals, piece, which, follows, weight, left, spacing * 2 ** (level - 1))
+        out[left & (sides == 1)] = level
+        left &= sides == 0
+    return out[piece]
+
+
+@dataclass(frozen=True, eq=False)
+class Neighbours:
+    """Where lines are, so that those beside them are found.
+
+    points: (p, 2) their samples, normals: (p, 2) of the lines there, which: (p,) the line of each. there: (rows,
+    columns) a sample in each cell that a line passes, -1 for none; cells are so wide, from left, top.
+    """
+
+    points: Floats
+    normals: Floats
+    which: npt.NDArray[np.int32]
+    there: npt.NDArray[np.int32]
+    left: float
+    top: float
+    cell: float
+    spacing: float
+
+    @classmethod
+    def of(cls, points: Floats, normals: Floats, which: Ints, some: Ints, spacing: float) -> Neighbours:
+        """Of those samples alone that are among `some`."""
+        cell = CELL * spacing
+        x, y = points[:, 0], points[:, 1]
+        left, top = float(x.min(initial=0.0)) - cell, float(y.min(initial=0.0)) - cell
+        columns, rows = int((x.max(initial=0.0) - left) / cell) + 2, int((y.max(initial=0.0) - top) / cell) + 2
+        there = np.full((rows, columns), -1, np.int32)
+        points, line = np.ascontiguousarray(points), which.astype(np.int32)
+        _turns.mark(points, line, some.astype(np.int32), columns, rows, left, top, cell, there.ravel())
+        return cls(points, np.ascontiguousarray(normals), line, there, left, top, cell, spacing)
+
+    def _asked(self) -> tuple[object, ...]:
+        rows, columns = self.there.shape
+        return (
+            self.points, self.normals, self.which, self.there.ravel(), columns, rows, self.left, self.top, self.cell,
+            NEAREST * self.spacing, STEP * self.spacing, PROBES, max(3, round(3 * self.spacing)),
+        )  # fmt: skip
+
+    def beside(self, samples: Ints) -> npt.NDArray[np.int32]:
+        """(n, 2) the sample of another line that is next on both sides of such samples, -1 where none is near."""
+        out = np.empty((len(samples), 2), np.int32)
+        _turns.beside(*self._asked(), samples.astype(np.int32), out)
+        return out
+
+    def distances(self) -> tuple[Floats, Floats, Mask]:
+        """How far apart lines are at each sample (p,), the mean of both sides; how much more to the normal's side.
+
+        And whether there is a line on either side, of about the same direction.
+        """
+        n, spacing = len(self.points), self.spacing
+        apart, more, both = np.empty(n), np.empty(n), np.empty(n, np.uint8)
+        _turns.distances(*self._asked(), LEAST * spacing, MOST * spacing, spacing, ALIKE_COSINE, apart, more, both)
+        return apart, more, both > 0
+
+
+def distances(points: Floats, first: Ints, normals: Floats, spacing: float) -> tuple[Floats, Floats, Mask]:
+    """`Neighbours.distances` of all lines."""
+    which = np.repeat(np.arange(len(first) - 1), np.diff(first))
+    return Neighbours.of(points, normals, which, np.arange(len(points)), spacing).distances()
+
+
+def _sides(
+    points: Floats, normals: Floats, piece: Ints, which: Ints, follows: npt.NDArray[np.bool_], weight: Floats,
+    left: npt.NDArray[np.bool_], spacing: float,
+) -> npt.NDArray[np.int8]:  # fmt: skip
+    """(n,) 0 or 1 for each piece that is left."""
+    some = np.flatnonzero(left[piece])
+    half = some[::2]
+    met = Neighbours.of(points, normals, which, some, spacing).beside(half)
+    here = np.repeat(half, 2)[met.ravel() >= 0]
+    pairs_of = np.sort(np.column_stack([piece[here], piece[met[met >= 0]]]), axis=1)
+    n = len(follows)
+    pairs, times = np.unique(pairs_of[:, 0] * n + pairs_of[:, 1], return_counts=True)
+    a, b = pairs // n, pairs % n
+    apart = a != b
+    a, b, times = a[apart], b[apart], times[apart]
+    after = np.flatnonzero(follows & left & np.concatenate([[False], left[:-1]]))
+    a, b = np.concatenate([a, after - 1]), np.concatenate([b, after])
+    matters = np.minimum(weight[a], weight[b]) + 0.02
+    value = np.concatenate([-times.astype(np.float64), np.full(len(after), ALIKE)]) * matters
+    value = np.rint(value * 64)  # whole numbers: no sum depends on its order
+    order = np.argsort(-np.abs(value), kind="stable")
+    side = np.zeros(n, np.int8)
+    _turns.join(
+        a[order].astype(np.int32), b[order].astype(np.int32), (value[order] < 0).astype(np.int8),
+        np.arange(n, dtype=np.int32), side,
+    )  # fmt: skip
+    ends, others, values = np.concatenate([a, b]), np.concatenate([b, a]), np.concatenate([value, value])
+    order = np.argsort(ends, kind="stable")
+    begin = curves.starts(np.bincount(ends, minlength=n))
+    _turns.settle(begin, others[order].astype(np.int32), values[order].astype(np.float32), side, ROUNDS)
+    return side
