@@ -1,5 +1,7 @@
 """Lines that leave off where it is light, one of each two neighbours; lines that close up where one ends."""
 
+from itertools import pairwise
+
 import numpy as np
 
 from penink_cli.blasting import taking_turns
@@ -33,7 +35,7 @@ def test_on_rings_that_are_cut_no_two_neighbours_go_on_or_leave_off_together():
     points, first = np.concatenate(lines), starts(np.array([len(line) for line in lines]))
     normals = (points - 100) / np.hypot(*(points - 100).T)[:, None]
     level = taking_turns.levels(points, first, normals, np.ones(len(points)), spacing)
-    left_off = np.array([np.mean(level[a:b] == 1) for a, b in zip(first, first[1:])])
+    left_off = np.array([np.mean(level[a:b] == 1) for a, b in pairwise(first)])
     assert ((left_off < 0.02) | (left_off > 0.98)).all()
     assert (np.abs(np.diff(np.round(left_off))) == 1).all()
 

@@ -152,11 +152,11 @@ def settle(
 
     weight: of each link, positive where both are to be on one side. Returns how many changed.
     """
-    cdef Py_ssize_t r, i, k
+    cdef Py_ssize_t _r, i, k
     cdef Py_ssize_t changed = 0
     cdef float asks
     with nogil:
-        for r in range(rounds):
+        for _r in range(rounds):
             for i in range(side.shape[0]):
                 asks = <float>0.0
                 for k in range(begin[i], begin[i + 1]):
