@@ -154,7 +154,7 @@ def _evened_out(lines: Lines, spacing: float) -> Lines:
     So where a line ends, what is white beside it is a point and no gap.
     """
     lines = _prolonged(lines)
-    points = lines.points
+    points: Floats = np.asarray(lines.points, np.float64)
     for _ in range(EVENINGS):
         points, _, _ = _moved(points, lines.first, spacing)
     # of what was added that is kept which has room
@@ -268,7 +268,7 @@ def _cut(sheet: Sheet, lines: Lines, borders: walls.Walls, spacing: float, fines
     ahead = _ahead(points, first)
     across = sheet.gain_pt * FILLED * np.abs(ahead).sum(axis=1)
     rim = curve >= inner
-    light = 1 - np.clip(_at_points(sheet, sheet.tone, points) * spacing / (2 * (finest_pt + across)), 0.0, 1.0)
+    light = 1 - np.clip(_at_points(sheet, sheet.tone.astype(np.float64), points) * spacing / (2 * (finest_pt + across)), 0.0, 1.0)
     light = np.where(rim[which], 0.0, light)
     normals = np.column_stack([-ahead[:, 1], ahead[:, 0]])
     level = levels(points, first, normals, light, spacing)
