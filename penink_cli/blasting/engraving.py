@@ -344,7 +344,8 @@ def _dashes(
     line is drawn where its saw is below its part; that allows for what dashes lose by their pointed ends.
     """
     share = _mean_along(tone / finest, tracks.first, CALM)
-    halved = 2.0 ** np.where(tracks.level > 0, tracks.level, LEVELS)
+    # of the first that leave off each makes half of the tone, of the next a quarter …
+    halved = np.array([1 << LEVELS, *(1 << k for k in range(1, LEVELS + 1))], np.float64)[tracks.level]
     share = np.clip(share * halved - (tracks.level > 0), 0.0, 1.0)
     period = np.maximum(DASH_PT / np.maximum(share, 1e-3), GAP_PT / np.maximum(1 - share, 1e-3))
     period = np.clip(period, PERIOD_PT, LONGEST_PERIOD_PT)
