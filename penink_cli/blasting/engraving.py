@@ -268,7 +268,8 @@ def _cut(sheet: Sheet, lines: Lines, borders: walls.Walls, spacing: float, fines
     ahead = _ahead(points, first)
     across = sheet.gain_pt * FILLED * np.abs(ahead).sum(axis=1)
     rim = curve >= inner
-    light = 1 - np.clip(_at_points(sheet, sheet.tone.astype(np.float64), points) * spacing / (2 * (finest_pt + across)), 0.0, 1.0)
+    finest = _at_points(sheet, sheet.tone.astype(np.float64), points) * spacing / (finest_pt + across)
+    light = 1 - np.clip(finest / 2, 0.0, 1.0)
     light = np.where(rim[which], 0.0, light)
     normals = np.column_stack([-ahead[:, 1], ahead[:, 0]])
     level = levels(points, first, normals, light, spacing)
