@@ -75,7 +75,7 @@ RENDERED = (
 SLOW = (
     "tests/faults/test_degenerate.py", "tests/faults/test_environment.py", "tests/faults/test_signals.py",
     "tests/faults/test_shortage.py", "tests/formats/test_found.py", "tests/test_make.py",
-    "tests/test_readme.py::test_every_block",
+    "tests/test_readme.py::test_every_block", "tests/test_registries.py",
     "tests/outputs/test_manual.py::test_examples_run", "tests/textures/", "tests/directions/test_detection.py",
 )  # fmt: skip
 
