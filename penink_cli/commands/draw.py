@@ -240,21 +240,18 @@ class _Drawing:
         if "lines" in self.stages:
             lines = self.run("detect-lines", [*self.words("lines", "detect-lines"), *photo], "lines.json")
         directions = self.directions(photo, edges, lines)
-        samples = self.run("extract-samples", ["-e", edges, grey], "samples.pgm")
         if of_illustrations(self.ending):
+            samples = self.run("extract-samples", ["-e", edges, grey], "samples.pgm")
             self.illustrated(grey, size, edges, lines, directions, samples, output, page)
             return
         over = self.over(size, edges, lines)
-        from penink_cli.illustration.drawing import grey_size
-
-        across, down = grey_size(self.width, self.aspect)
-        enlarged = self.run("enlarge", ["-e", edges, "--size", f"{across}x{down}", "--soften", samples], "enlarged.pgm")
+        grey = self.enlarged(grey, size, edges)
         ink = [word for name in over for word in ("--ink", name)]
         along = ["--directions", directions] if directions else []
         white = ["--lines", lines] if lines else []
         hatching = self.run(
             "blast",
-            ["-e", edges, *self.on_paper, *self.device, *self.words("blast", "blast"), *along, *white, *ink, enlarged],
+            ["-e", edges, *self.on_paper, *self.device, *self.words("blast", "blast"), *along, *white, *ink, grey],
             "hatching.jsonl",
         )
         if not any(self.chain.lines(name) > 1 for name in (hatching, *over)):
@@ -286,6 +283,16 @@ class _Drawing:
             told += ["--dpi", repr(dpi)]
         grey = self.run("compose", [*self.on_paper, *told, *photo], "grey.pgm")
         return grey, working_size(shape, self.width, dpi / 72)
+
+    def enlarged(self, grey: str, size: tuple[int, int], edges: str) -> str:
+        """The grey that is blasted: reconstructed where the photo has fewer pixels than the drawing can show."""
+        from penink_cli.illustration.drawing import grey_size
+
+        across, down = grey_size(self.width, self.aspect)
+        if size[0] >= across:
+            return grey
+        samples = self.run("extract-samples", ["-e", edges, grey], "samples.pgm")
+        return self.run("enlarge", ["-e", edges, "--size", f"{across}x{down}", "--soften", samples], "enlarged.pgm")
 
     def directions(self, photo: list[str], edges: str, lines: str | None) -> str | None:
         """The field that is hatched along, if any."""
