@@ -1,6 +1,7 @@
 """What drawings show of the sample photographs, style by style, and what `draw` costs.
 
-Run as ``python -m tests.benchmarks.drawing [STYLE …]``. Drawing and photograph are both seen in a band between 0.96 and
+Run as ``python -m tests.benchmarks.drawing [detail] [cost] [STYLE …]``: all parts and all styles, or those named.
+`detail`: a row a style, means and each picture. Drawing and photograph are both seen in a band between 0.96 and
 3.84 points (differences of Gaussians) and correlated, so that a drawing may be lighter, darker or of more contrast:
 
     detail   over the whole picture, where strong contrasts count most: 1 shows all of it, 0 none
@@ -95,11 +96,15 @@ def cost(folder):
 
 
 def main():
+    parts = [word for word in sys.argv[1:] if word in ("detail", "cost")] or ["detail", "cost"]
+    styles = [word for word in sys.argv[1:] if word not in parts] or shipped()
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         subprocess.run([sys.executable, "-m", "samples.photographs", folder, *NAMES], check=True)
-        table(folder, sys.argv[1:] or shipped())
-        cost(folder)
+        if "detail" in parts:
+            table(folder, styles)
+        if "cost" in parts:
+            cost(folder)
 
 
 if __name__ == "__main__":
