@@ -31,6 +31,7 @@ def blast(
     outlines: Strokes | None = None,
     directions: Directions | None = None,
     lines: Lines | None = None,
+    swell: float = 0.0,
     threads: int | None = None,
     tick: Callable[[], None] = lambda: None,
 ) -> Strokes:
@@ -45,6 +46,7 @@ def blast(
     directions: a field along which hatching and sets of strokes run, in place of fixed angles.
     lines: telling lines of the picture: light ones are left out, and beside the dark ones, which are drawn already and
         among the outlines, hatching keeps clear.
+    swell: how much strokes of a hatching or a set swell along their way where the tone does, see `pressure`.
     tick: called now and then, `TICKS` times at the most.
 
     The width and density of strokes do not depend on the size of the sheet. Equal input gives equal strokes,
@@ -59,8 +61,8 @@ def blast(
 
         tone, told = telling.told(tone, width_pt, height_pt, lines, outlines, threads or 1)
     task = Task(
-        tone, width_pt, height_pt, edges, texture, seed, pen_pt, device_dpi, outlines, directions, told, threads or 1,
-        tick,
+        tone, width_pt, height_pt, edges, texture, seed, pen_pt, device_dpi, outlines, directions, told, swell,
+        threads or 1, tick,
     )  # fmt: skip
     strokes: Strokes = chosen.draw(task)
     tick()

@@ -34,6 +34,8 @@ LENIENCE = 0.1
 SINGLE = 0.06
 #: Rounds: the first ones lay the lines anew, the later ones only trim.
 SWEEPS, ROUNDS = 2, 3
+#: Where less than this is bare, what is due is no reason for lines.
+BARE = 0.05
 #: How much of the error the next sweep's density takes up.
 SWEEP_GAIN = 0.4
 #: Along a field no more of an error than this is fed back at a time: lines that must end there cannot make it up.
@@ -103,7 +105,8 @@ def hatch_sheet(
         tick()
         if turn < SWEEPS:
             laid = []  # those of the round before are no longer needed
-            smooth = ((sheet.low_pass(density) if turn else wide) / sheet.weight - there) / (1 - there)
+            smooth = (sheet.low_pass(density) if turn else wide) / sheet.weight - there
+            smooth = np.maximum(smooth, 0) / np.maximum(1 - there, np.float32(BARE))
             covers = layer_shares(sheet, smooth, density, layers, form is not None and examples is None)
             for i, (layer, pen, hair) in enumerate(zip(layers, pens, finest)):
                 cover, own_seed = covers.pop(0), seed * 64 + i

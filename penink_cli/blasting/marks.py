@@ -82,11 +82,11 @@ def marks(
             chains.append(np.array([[x, y]]) * scale)
             widths.append(max(size - gain_pt, 0.1))
             continue
-        _fill(np.where(off <= 1.0, around, 0.0), np.array([left, top]), scale, pen_pt, gain_pt, chains, widths, fixed)
+        fill(np.where(off <= 1.0, around, 0.0), np.array([left, top]), scale, pen_pt, gain_pt, chains, widths, fixed)
     return Strokes.of(width_pt, height_pt, chains, widths)
 
 
-def _fill(
+def fill(
     tone: Floats, corner: Floats, scale: Floats, pen_pt: float, gain_pt: float, chains: list[Floats],
     widths: list[float], fixed: bool,
 ) -> None:  # fmt: skip

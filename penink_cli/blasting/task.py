@@ -40,6 +40,7 @@ class Task:
     outlines: Strokes | None
     directions: Directions | None
     told: npt.NDArray[np.bool_] | None
+    swell: float
     threads: int
     tick: Callable[[], None]
 

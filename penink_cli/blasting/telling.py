@@ -1,11 +1,15 @@
-"""What telling lines ask of the hatching: it leaves light ones out, keeps clear of dark ones, and draws none twice."""
+"""What telling lines ask of the hatching: it leaves light ones out, and draws no dark one twice.
+
+Dark ones are ink on the sheet, as outlines are. Hatching that kept clear of them besides lost more of the picture than
+the lines told of it: they lie where it is dark, and what was moved away there is its detail.
+"""
 
 from __future__ import annotations
 
 import numpy as np
 import numpy.typing as npt
 
-from penink_cli.blasting.sheet import CELL_PT, Cells, coverage, resample
+from penink_cli.blasting.sheet import CELL_PT, coverage, resample
 from penink_cli.composition.filters import blurred
 from penink_cli.ground.model import Floats, LineChoice, Lines, Strokes
 from penink_cli.lines.strokes import line_strokes
@@ -14,9 +18,6 @@ from penink_cli.lines.strokes import line_strokes
 WHITE = LineChoice(pen_pt=1.8, density=0.12, per_inch2=5.0)
 #: They show where the tone around, over a Gaussian of this σ, exceeds DARK, and in full from FULL on.
 AROUND_PT, DARK, FULL = 3.0, 0.35, 0.65
-#: Beside dark lines, within so many points of them, hatching moves this part of the tone away, unless it is nearly
-#: black there.
-CLEAR_PT, CLEAR, BLACK = 1.0, 0.7, (0.7, 0.9)
 #: What is no further than this from a dark line is told by it.
 TOLD_PT = 1.6
 
@@ -39,17 +40,6 @@ def told(
     left = tone * resample((1 - shown).astype(np.float64), *tone.shape)
     near = np.zeros((rows, columns), np.bool_)
     if ink is not None and len(ink):
-        beside = coverage(ink, rows, columns, 2 * CLEAR_PT) - coverage(ink, rows, columns)
-        grey = np.clip((BLACK[1] - around) / (BLACK[1] - BLACK[0]), 0, 1)
-        aside = (CLEAR * grey * beside * resample(left, rows, columns)).astype(np.float32)
-        # what is kept away there goes a little further off: the tone is the same
-        moved = blurred(aside, AROUND_PT / CELL_PT, threads) - aside
-        left = np.clip(left + _spread(moved, *left.shape), 0, 1)
         near = coverage(ink, rows, columns, 2 * TOLD_PT) > 0.5
     return left, near
-
-
-def _spread(values: Cells, rows: int, columns: int) -> Floats:
-    """Values of either sign at another size; `resample` knows none below 0."""
-    return resample(0.5 + 0.5 * values.astype(np.float64), rows, columns) * 2 - 1
 

@@ -69,6 +69,13 @@ if TYPE_CHECKING:
     help=" ".join(f"{name}: {what}." for name, what in RULES.items()),
 )
 @click.option(
+    "--swell",
+    type=Finite(0, 2),
+    default=0.0,
+    metavar="S",
+    help="Strokes of hatching swell where the picture is darker than around; 1 by as much as it is.  [default: 0]",
+)
+@click.option(
     "--directions",
     "directions_file",
     type=click.Path(allow_dash=True),
@@ -106,6 +113,7 @@ def blast(
     seed: int,
     device_dpi: float | None,
     rule: str,
+    swell: float,
     directions_file: str | None,
     lines_file: str | None,
     ink_files: tuple[str, ...],
@@ -165,6 +173,7 @@ def blast(
             outlines=Strokes.joined(ink) if ink else None,
             directions=directions,
             lines=lines,
+            swell=swell,
             threads=threads or processors(),
             tick=lambda: more(1),
         )

@@ -201,6 +201,7 @@ def _told(style: Style, given: dict[str, Any]) -> dict[str, dict[str, Value]]:
         for stage in ("blast", "outline", "lines"):
             if stage in stages:
                 stages[stage]["pen"] = given["pen"]
+        stages["blast"].pop("swell", None)
         if "lines" in stages:
             stages["lines"]["even"] = True
     return stages
@@ -350,7 +351,7 @@ class _Drawing:
                 for name in ("pen", "even", "density", "per-inch2", "min-rank")
                 if name in told
             }
-        for name in ("pen", "gamma", "seed", "rule"):
+        for name in ("pen", "gamma", "seed", "rule", "swell"):
             if name in blast:
                 layer[name] = _number(name, blast[name])
         if "outline" in self.stages:

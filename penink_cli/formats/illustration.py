@@ -119,6 +119,7 @@ def _layer(item: dict[str, Any], place: str, fetch: Fetch, shipped: Shipped, max
         ),
         pen_pt=_length(item, "pen", MAX_PEN, place) if "pen" in item else None,
         gamma=number("gamma", 1.0, 0.05, 20.0),
+        swell=number("swell", 0.0, 0.0, 2.0),
         rule=rule,
         seed=strict_json.whole(item.get("seed", 0), f"{place}: seed", 0, 2**63 - 1),
         outline=_outline(item["outline"], f"{place}: outline") if "outline" in item else None,
@@ -237,6 +238,7 @@ def members(illustration: Illustration) -> dict[str, bytes]:
             ("levels", layer.levels, layer.samples.maxval + 1),
             ("pen", layer.pen_pt, None),
             ("gamma", layer.gamma, 1.0),
+            ("swell", layer.swell, 0.0),
             ("rule", layer.rule, "best"),
             ("seed", layer.seed, 0),
         ):
@@ -323,6 +325,7 @@ def rounded(illustration: Illustration) -> Illustration:
                 texture=texture,
                 pen_pt=_plain(layer.pen_pt),
                 gamma=float(_plain(layer.gamma)),
+                swell=float(_plain(layer.swell)),
                 outline=outline,
                 directions=field,
                 lines=lines,

@@ -430,7 +430,7 @@ class Layer:
     levels: how many grey levels the samples are kept at.
     texture_name: the shipped texture's name, None for a texture of the illustration's own.
     pen_pt: one pen for all hatching, None for the texture's own widths.
-    gamma, rule, seed: as `blast` takes them.
+    gamma, rule, seed, swell: as `blast` takes them.
     outline: None for no outline strokes.
     directions: what the hatching follows, None where it lies at the texture's angles.
     lines, line: its telling lines, None for none, and how they are drawn.
@@ -450,6 +450,7 @@ class Layer:
     directions: Directions | None = None
     lines: Lines | None = None
     line: LineChoice = LineChoice()
+    swell: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)

@@ -117,7 +117,8 @@ def test_black_is_black_and_no_net() -> None:
         strokes = blast(np.full((16, 16), wanted), 144, 144, None, find_texture("form"), directions=field(waves))
         paper = 1 - measures.rendered(strokes, 600)[60:-60, 60:-60].mean()
         assert least <= paper < most
-        assert off_angle(strokes, waves).mean() < 6
+        if wanted < 1:  # what is quite black is filled in rows
+            assert off_angle(strokes, waves).mean() < 6
 
 
 def test_no_layer_is_drawn_where_it_covers_nothing() -> None:

@@ -36,16 +36,14 @@ def test_light_lines_are_left_out_where_it_is_dark_and_only_there():
         assert (drawn[71:73].min() < 0.5 * drawn[40:60].mean()) == shown
 
 
-def test_hatching_keeps_clear_of_dark_lines_that_are_drawn():
+def test_dark_lines_are_ink_that_counts_and_take_nothing_else_away():
     asked = np.full((288, 288), 0.4)
     ink = line_strokes(lines(white=False), SIDE, SIDE, LineChoice())
-    plain, clear = (
-        rows(blast(asked, SIDE, SIDE, None, find_texture("crosshatch"), outlines=ink, lines=given))
-        for given in (None, lines(white=False))
-    )
-    beside = [69, 70, 73, 74]
-    assert clear[beside].mean() < 0.96 * plain[beside].mean()
-    assert abs(clear[20:60].mean() - plain[20:60].mean()) < 0.03
+    assert np.array_equal(told(asked, SIDE, SIDE, lines(white=False), ink, 1)[0], asked)
+    drawn = rows(blast(asked, SIDE, SIDE, None, find_texture("crosshatch"), outlines=ink, lines=lines(white=False)))
+    whole = rows(Strokes.joined([ink, blast(asked, SIDE, SIDE, None, find_texture("crosshatch"), outlines=ink)]))
+    assert drawn[64:80].mean() < whole[64:80].mean()
+    assert abs(whole[60:84].mean() - whole[20:50].mean()) < 0.03
 
 
 def test_thin_things_are_not_drawn_where_a_line_tells_of_them():

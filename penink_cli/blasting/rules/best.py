@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from penink_cli.blasting import hatching, stroke_set, tile
+from penink_cli.blasting import hatching, pressure, solids, stroke_set, tile
 from penink_cli.blasting.rules import engrave
 from penink_cli.blasting.task import Begun, Task
+from penink_cli.ground.device import MEAN
 from penink_cli.ground.model import Strokes, Texture
 
 SETS = True
@@ -26,21 +27,36 @@ def draw(task: Task) -> Strokes:
     elif texture.engraving is not None and task.pen_pt is None:
         strokes = engrave.engraved(task, begun)
     elif texture.layers:
-        strokes = hatching.hatch_sheet(
-            begun.sheet, texture.layers, task.edges, task.gain, task.seed, task.pen_pt, task.tick, begun.field(),
-            begun.told,
-        )  # fmt: skip
+        strokes = _layers(task, begun)
     else:
         strokes = _tile(task, begun)
     return begun.with_small(strokes)
 
 
+def _layers(task: Task, begun: Begun) -> Strokes:
+    layers, sheet = task.texture.layers, begun.sheet
+    black = Strokes(task.width_pt, task.height_pt)
+    if layers[-1].high >= 1.0:
+        gain = MEAN * task.gain
+        black = solids.solids(task.tone, task.width_pt, task.height_pt, task.pen_pt, gain, sheet.ink)
+        hatching.draw_first(sheet, black)
+    strokes = hatching.hatch_sheet(
+        sheet, layers, task.edges, task.gain, task.seed, task.pen_pt, task.tick, begun.field(), begun.told
+    )
+    return Strokes.joined([black, _pressed(task, begun, strokes)])
+
+
+def _pressed(task: Task, begun: Begun, strokes: Strokes) -> Strokes:
+    return pressure.swollen(begun.sheet, strokes, task.tone, task.swell) if task.swell else strokes
+
+
 def _set(task: Task, begun: Begun) -> Strokes:
     examples = task.texture.strokes
-    return hatching.hatch_sheet(
+    strokes = hatching.hatch_sheet(
         begun.sheet, stroke_set.passes(examples), task.edges, task.gain, task.seed, task.pen_pt, task.tick,
         begun.field() or begun.one_angle(), begun.told, examples,
     )  # fmt: skip
+    return _pressed(task, begun, strokes)
 
 
 def _tile(task: Task, begun: Begun) -> Strokes:

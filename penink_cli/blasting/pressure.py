@@ -1,0 +1,127 @@
+"""The hand's pressure along each stroke: hatching swells where the picture is darker than its surroundings.
+
+Lines of a hatching lie further apart than the finest things in a picture, and where they lie is found for what is
+around them. What is finer is told by their width, as with a pen whose nib gives way: at each knot it is the stroke's
+own times the tone there over the mean tone around. What that makes too dark or too light on the whole, as the eye sees
+it, is then taken back.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from penink_cli.blasting import curves
+from penink_cli.blasting.sheet import SIGMA_PT, Cells, Sheet
+from penink_cli.composition.filters import blurred
+from penink_cli.ground.model import Floats, Ints, Strokes
+
+#: σ of the tone at a knot, of the tone around it, and a tone added to both.
+FINE_PT, AROUND_PT, FLOOR = 0.5, SIGMA_PT, 0.02
+#: The least and the greatest width, in parts of the stroke's own.
+LEAST, MOST = 0.2, 2.6
+#: Knots are no closer than this, and a segment is split into so many parts.
+KNOT_PT, KNOTS = 2.0, (1, 2, 3, 4, 6, 8, 12, 16, 24, 32)
+#: Widths may be off by this much (points), for the sake of fewer knots.
+TOLERANCE_PT = 0.06
+#: Rounds in which the tone is set right, by no more than this part of the widths in each.
+ROUNDS, CORRECTION = 2, 0.3
+#: Where the tone is less, an error counts as little as there.
+SINGLE = 0.1
+
+
+def swollen(sheet: Sheet, strokes: Strokes, tone: Floats, swell: float) -> Strokes:
+    """The strokes, which are on the sheet, with widths along their way that follow the tone (h, w).
+
+    swell: 0 … 2, how much: 1 makes a stroke as much wider as the tone is darker.
+    """
+    if not len(strokes):
+        return strokes
+    px = tone.shape[1] / sheet.width
+    fine, around = (blurred(tone.astype(np.float32), sigma * px, sheet.threads) for sigma in (FINE_PT, AROUND_PT))
+    ratio = (fine + np.float32(FLOOR)) / (around + np.float32(FLOOR))
+    factor = np.clip(1 + np.float32(swell) * (ratio - 1), np.float32(LEAST), np.float32(MOST))
+    split, owner = _split(strokes, factor, sheet)
+    knots = split.points[np.repeat(split.first[:-1], np.diff(split.knots)) + 3 * curves.ramp(np.diff(split.knots))]
+    own = strokes.widths[owner] * _look_up(factor, knots, sheet)
+    correction: Cells = np.ones((sheet.rows, sheet.columns), np.float32)
+    for turn in range(ROUNDS + 1):
+        widths = own * _look_up(correction, knots, sheet)
+        drawn = split.swelling(np.maximum(np.round(widths, 2), 0.05))
+        if turn == ROUNDS:
+            break
+        sheet.clear()
+        _ink(sheet, drawn)
+        seen = sheet.spread(sheet.error() / np.maximum(sheet.seen(sheet.tone), np.float32(SINGLE)))
+        correction = correction * (1 + np.clip(seen, np.float32(-CORRECTION), np.float32(CORRECTION)))
+    sheet.clear()
+    _ink(sheet, drawn)
+    return drawn
+
+
+def _split(strokes: Strokes, factor: Cells, sheet: Sheet) -> tuple[Strokes, Ints]:
+    """The strokes with as many knots as their widths need, and (n,) the stroke of each knot."""
+    count = curves.segments_of(strokes.first)
+    which = np.repeat(np.arange(len(strokes)), count)
+    control = strokes.points[curves.begins_of(strokes.first)[:, None] + np.arange(4)]
+    parts = _parts(control, strokes.widths[which], factor, sheet)
+    inner, k = np.repeat(np.arange(len(parts)), parts), curves.ramp(parts)
+    pieces = curves.blossom(control[inner], k / parts[inner], (k + 1) / parts[inner])
+    total = np.zeros(len(strokes), np.int64)
+    np.add.at(total, which, parts)
+    first = curves.starts(3 * total + 1)
+    points = np.empty((int(first[-1]), 2))
+    points[first[:-1]] = strokes.points[strokes.first[:-1]]
+    at = np.repeat(first[:-1], total) + 3 * curves.ramp(total)
+    for j in range(1, 4):
+        points[at + j] = pieces[:, j]
+    return replace(strokes, points=points, first=first), np.repeat(np.arange(len(strokes)), total + 1)
+
+
+def _parts(control: Floats, widths: Floats, factor: Cells, sheet: Sheet) -> Ints:
+    """(n,) into how many parts each cubic (n, 4, 2) is split, for a width that is linear along each of them."""
+    legs = np.diff(control, axis=1)
+    length = np.sqrt((legs * legs).sum(axis=2)).sum(axis=1)
+    most = np.array(KNOTS)[np.minimum(np.searchsorted(KNOTS, length / KNOT_PT), len(KNOTS) - 1)]
+    finest = KNOTS[-1]
+    wanted = np.empty((finest + 1, len(most)))
+    for k in range(finest + 1):
+        t = k / finest
+        s = 1 - t
+        place = s * s * s * control[:, 0] + 3 * s * s * t * control[:, 1]
+        place = place + 3 * s * t * t * control[:, 2] + t * t * t * control[:, 3]
+        wanted[k] = _look_up(factor, place, sheet) * widths
+    parts = most.copy()
+    left = np.arange(len(most))
+    for n in KNOTS[:-1]:
+        at = np.arange(finest + 1) * n / finest
+        low = np.minimum(at.astype(np.int64), n - 1)
+        share = (at - low)[:, None]
+        ends = np.rint(np.arange(n + 1) * finest / n).astype(np.int64)
+        mine = wanted[:, left]
+        off = np.abs(mine[ends[low]] * (1 - share) + mine[ends[low + 1]] * share - mine).max(axis=0)
+        good = (off <= TOLERANCE_PT) | (most[left] <= n)
+        parts[left[good]] = n
+        left = left[~good]
+    return parts
+
+
+def _look_up(values: Cells, points: Floats, sheet: Sheet) -> Floats:
+    """Values (h, w) that fill the sheet at points (n, 2), bilinear."""
+    h, w = values.shape
+    x = np.clip(points[:, 0] * (w / sheet.width) - 0.5, 0, w - 1)
+    y = np.clip(points[:, 1] * (h / sheet.height) - 0.5, 0, h - 1)
+    j, i = x.astype(np.int64), y.astype(np.int64)
+    u, v = x - j, y - i
+    right, below = np.minimum(j + 1, w - 1), np.minimum(i + 1, h - 1)
+    top = values[i, j] * (1 - u) + values[i, right] * u
+    bottom = values[below, j] * (1 - u) + values[below, right] * u
+    return np.asarray(top * (1 - v) + bottom * v)
+
+
+def _ink(sheet: Sheet, strokes: Strokes) -> None:
+    """Ink the strokes on the sheet, in pieces of one width."""
+    pieces = strokes.by_segments()
+    steps = curves.pieces_of(pieces.points, pieces.first, sheet.width / sheet.columns)
+    sheet.paint(curves.sample(pieces.points, pieces.first, steps), pieces.widths)

@@ -1,0 +1,65 @@
+"""Solid black: what is darker than hatching can be is filled, row by row, with clean borders.
+
+Layers that cross each other in the dark are a grainy net, and strokes that close up leave flecks of white where they
+end. Here the dark is found first: as far as it is black, and where it meets light, up to half way between them. Rows of
+a pen that overlap fill it; hatching begins beside it.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from penink_cli.blasting import marks
+from penink_cli.blasting.sheet import Cells, resample
+from penink_cli.composition.filters import blurred
+from penink_cli.ground.masks import distance, labelled
+from penink_cli.ground.model import Floats, Strokes
+
+#: What is darker is black.
+BLACK = 0.96
+#: The tone is smoothed with a Gaussian of this σ to see where it is black; where it falls below LIGHT within so many
+#: points the black ends where it has fallen by half.
+SMOOTH_PT, LIGHT, FALLS_PT = 0.5, 0.6, 1.4
+#: What is smaller than this (square points) is left to the hatching.
+LEAST_PT2 = 3.0
+#: The pen that fills: fine, for rows lie as far as that from a border which runs along them.
+PEN_PT = 0.35
+
+
+def solids(
+    tone: Floats, width_pt: float, height_pt: float, pen_pt: float | None, gain_pt: float, ink: Cells
+) -> Strokes:
+    """Strokes that fill all that is as good as black in the tone (h, w) on a sheet of that size.
+
+    pen_pt: the one pen there is, None for one that suits. gain_pt: how much wider the device paints it.
+    ink: (rows, columns) what is on the sheet already: what that covers is drawn.
+    """
+    h, w = tone.shape
+    none = Strokes(width_pt, height_pt)
+    if not (tone > BLACK).any():
+        return none
+    fine = max(1.0, marks.FINE * width_pt / w)
+    if fine > 1:
+        h, w = round(h * fine), round(w * fine)
+        tone = resample(tone, h, w)
+    px = w / width_pt
+    smooth = blurred(tone.astype(np.float32), SMOOTH_PT * px, 1).astype(np.float64)
+    core = smooth > BLACK
+    falls = (distance(smooth >= LIGHT) < FALLS_PT * px) & (distance(~core) < FALLS_PT * px)
+    # how much darker a place is than what black begins with there, half way up or down where it does
+    value = np.where(falls, np.maximum(tone, smooth) - marks.LEVEL, smooth - BLACK) + marks.LEVEL
+    part, boxes = labelled(value > marks.LEVEL)
+    count = len(boxes) + 1
+    at = np.arange(h) * ink.shape[0] // h, np.arange(w) * ink.shape[1] // w
+    drawn = np.bincount(part[ink[np.ix_(*at)] > marks.INKED], minlength=count)
+    area, size = (np.bincount(p.ravel(), minlength=count) for p in (part[core], part))
+    keep = (area >= LEAST_PT2 * px * px) & (drawn < marks.INKED * size)
+    keep[0] = False
+    mine = distance(~keep[part]) < 1.5  # up to the places between which the border lies
+    chains: list[Floats] = []
+    widths: list[float] = []
+    marks.fill(
+        np.where(mine, np.clip(value, 0, 1), 0.0), np.zeros(2), np.array([width_pt / w, height_pt / h]),
+        PEN_PT if pen_pt is None else pen_pt, gain_pt, chains, widths, pen_pt is not None,
+    )  # fmt: skip
+    return Strokes.of(width_pt, height_pt, chains, widths)

@@ -1,0 +1,97 @@
+"""Strokes swell where the picture is darker than around, the tone stays, and what is black is filled."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import skimage.data
+
+from penink_cli.blasting.blast import blast, left_over
+from penink_cli.blasting.sheet import coverage
+from penink_cli.blasting.solids import solids
+from penink_cli.options.textures import find_texture
+
+SIDE = 144.0
+
+
+def pattern(contrast: float) -> np.ndarray:
+    """Tone (288, 288) of stripes 2 points wide, 4 apart, around .35: finer than the hatching's low-pass."""
+    x = (np.arange(288) + 0.5) / 2
+    return np.broadcast_to(0.35 + contrast * np.sign(np.sin(2 * np.pi * x / 4 + 0.1)), (288, 288)).copy()
+
+
+def seen(strokes) -> np.ndarray:
+    """Ink of the columns, four a point."""
+    return coverage(strokes, 576, 576)[32:-32].mean(axis=0)
+
+
+def test_detail_finer_than_the_lines_is_told_by_their_width():
+    tone, texture = pattern(0.1), find_texture("parallel")
+    dark = (np.arange(576) + 0.5) / 4 % 4 < 2
+    told = []
+    for swell in (0.0, 1.0):
+        ink = seen(blast(tone, SIDE, SIDE, None, texture, device_dpi=None, swell=swell))[32:-32]
+        told.append(ink[dark[32:-32]].mean() - ink[~dark[32:-32]].mean())
+    assert abs(told[0]) < 0.01 and told[1] > 0.05  # .2 in the picture, .15 as smooth as it is looked at
+
+
+def test_the_tone_is_as_true_as_without():
+    photo = np.asarray(skimage.data.camera(), float)[:256, 100:356] / 255
+    drawn = blast(1 - photo, SIDE, SIDE, None, find_texture("crosshatch"), swell=1.0)
+    error = left_over(1 - photo, SIDE, SIDE, drawn, 600.0, 1)
+    assert np.sqrt((error**2).mean()) < 0.012 and abs(error.mean()) < 0.004
+
+
+def test_even_tone_needs_no_knots():
+    drawn = blast(np.full((288, 288), 0.3), SIDE, SIDE, None, find_texture("parallel"), device_dpi=None, swell=1.0)
+    plain = blast(np.full((288, 288), 0.3), SIDE, SIDE, None, find_texture("parallel"), device_dpi=None)
+    assert len(drawn) == len(plain) and len(drawn.points) <= 1.15 * len(plain.points)
+
+
+def test_one_pen_may_swell_but_never_by_itself():
+    tone = pattern(0.2)
+    for swell, kinds in ((0.0, 1), (1.0, 10)):
+        drawn = blast(tone, SIDE, SIDE, None, find_texture("parallel"), device_dpi=None, pen_pt=0.3, swell=swell)
+        assert len(set(drawn.at_knots.round(2).tolist())) >= kinds
+        assert swell or drawn.knot_widths is None
+
+
+def two_blacks() -> np.ndarray:
+    """Tone (288, 288): a black square of 40 points with a crisp border, one whose border is soft, grey between."""
+    tone = np.full((288, 288), 0.4)
+    tone[40:120, 40:120] = 1.0
+    y, x = np.mgrid[:288, :288]
+    away = np.maximum(np.abs(y - 200), np.abs(x - 200)) / 2
+    return np.maximum(tone, np.clip(1.4 - away / 40, 0, 1))
+
+
+@pytest.mark.parametrize("pen", [None, 0.4])
+def test_black_is_solid_with_a_clean_border(pen):
+    none = np.zeros((150, 150), np.float32)
+    ink = coverage(solids(two_blacks(), SIDE, SIDE, pen, 0.0, none), 1152, 1152)
+    assert ink[163:477, 163:477].min() == 1.0  # no flecks
+    assert ink[:, :156].max() == 0 and ink[156:484, 486:560].max() == 0  # a quarter of a point out there is nothing
+    soft = ink[800]  # black from where the tone is .96
+    dark = np.flatnonzero(soft) / 8
+    assert abs(dark.min() - (100 - 0.44 * 40)) < 1 and abs(dark.max() - (100 + 0.44 * 40)) < 1
+
+
+def test_what_is_not_black_or_drawn_already_is_left():
+    none, full = np.zeros((150, 150), np.float32), np.ones((150, 150), np.float32)
+    assert len(solids(np.full((288, 288), 0.95), SIDE, SIDE, None, 0.0, none)) == 0
+    assert len(solids(two_blacks(), SIDE, SIDE, None, 0.0, full)) == 0
+    specks = np.zeros((288, 288))
+    specks[::20, ::20] = 1.0
+    assert len(solids(specks, SIDE, SIDE, None, 0.0, none)) == 0
+
+
+def test_form_hatches_nothing_over_its_blacks():
+    texture = find_texture("form")
+    drawn = blast(two_blacks(), SIDE, SIDE, None, texture, device_dpi=None)
+    black = solids(two_blacks(), SIDE, SIDE, None, 0.0, np.zeros((150, 150), np.float32))
+    rest = drawn.taken(np.arange(len(black), len(drawn)))
+    assert coverage(rest, 576, 576)[90:230, 90:230].mean() < 0.06
+    assert coverage(drawn, 1152, 1152)[163:477, 163:477].min() == 1.0
+    assert np.array_equal(replace(drawn, texture=None).points[: len(black.points)], black.points)
