@@ -53,7 +53,7 @@ def swollen(sheet: Sheet, strokes: Strokes, tone: Floats, swell: float) -> Strok
             break
         sheet.clear()
         _ink(sheet, drawn)
-        seen = sheet.spread(sheet.error() / np.maximum(sheet.seen(sheet.tone), np.float32(SINGLE)))
+        seen = sheet.spread(sheet.error()) / sheet.spread(np.maximum(sheet.seen(sheet.tone), np.float32(SINGLE)))
         correction = correction * (1 + np.clip(seen, np.float32(-CORRECTION), np.float32(CORRECTION)))
     sheet.clear()
     _ink(sheet, drawn)
