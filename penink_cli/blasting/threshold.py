@@ -20,6 +20,7 @@ from penink_cli.blasting._compiled import threshold as _threshold
 from penink_cli.blasting.constants import BLOCK, DEEP, GAP, LEAST_PIXELS, PIXEL, SHORT, TAKEN_UP, WIDENED
 from penink_cli.blasting.screens import Screen, ThresholdTable, table
 from penink_cli.blasting.sheet import resample
+from penink_cli.geometry import edge_index
 from penink_cli.ground.angles import direction
 from penink_cli.ground.model import EdgeList, Floats, Ints, Strokes, Texture
 
@@ -28,15 +29,9 @@ Bytes = npt.NDArray[np.uint8]
 
 def buckets(ends: Floats, columns: int, rows: int) -> tuple[npt.NDArray[np.int32], npt.NDArray[np.int32]]:
     """first (columns · rows + 1,) and items: which edges (m, 4) ax ay bx by, in sample units, are in which square."""
-    lists: list[list[int]] = [[] for _ in range(columns * rows)]
-    for e, (ax, ay, bx, by) in enumerate(ends.tolist()):
-        for j in range(math.floor(min(ay, by)), math.floor(max(ay, by)) + 1):
-            for i in range(math.floor(min(ax, bx)), math.floor(max(ax, bx)) + 1):
-                if 0 <= i + 1 < columns and 0 <= j + 1 < rows:
-                    lists[(j + 1) * columns + i + 1].append(e)
-    first = np.cumsum([0] + [len(x) for x in lists]).astype(np.int32)
-    items = np.array([e for x in lists for e in x] or [0], np.int32)
-    return first, items
+    low, high = edge_index.cells(np.asarray(ends, np.float64).reshape(-1, 4), 1.0)
+    first, items = edge_index.lists(low + 1, high + 1, columns, rows)
+    return first.astype(np.int32), np.append(items, 0).astype(np.int32)
 
 
 def _copies(screen: Screen, width: float, height: float) -> npt.NDArray[np.int32]:

@@ -13,6 +13,7 @@ import numpy.typing as npt
 from penink_cli.blasting import curves
 from penink_cli.blasting._compiled import crossings as _crossings
 from penink_cli.blasting.sheet import STEP, Sheet
+from penink_cli.geometry import edge_index
 from penink_cli.ground.model import EdgeList, Floats, Ints
 
 CELL_PT = 6.0
@@ -122,22 +123,9 @@ def build(edges: EdgeList | None, sheet: Sheet, pen_pt: float) -> Walls:
     end = segments[which, :2] + along[which] * ((k + 1) / n[which])[:, None]
     segments = np.ascontiguousarray(np.concatenate([start, end], axis=1))
     columns, rows = int(w / CELL_PT) + 1, int(h / CELL_PT) + 1
-    lo = np.clip(np.floor(np.minimum(start, end) / CELL_PT).astype(np.int64), 0, [columns - 1, rows - 1])
-    hi = np.clip(np.floor(np.maximum(start, end) / CELL_PT).astype(np.int64), 0, [columns - 1, rows - 1])
-    wide, high = (hi - lo + 1).T
-    which, k = np.repeat(np.arange(len(wide)), wide * high), curves.ramp(wide * high)
-    cell = (lo[which, 1] + k // wide[which]) * columns + lo[which, 0] + k % wide[which]
-    order = np.argsort(cell, kind="stable")
-    begin = np.searchsorted(cell[order], np.arange(columns * rows + 1))
-    return Walls(
-        segments,
-        inside,
-        begin.astype(np.int64),
-        np.ascontiguousarray(which[order]),
-        columns,
-        rows,
-        (d, d, w - d, h - d),
-    )
+    low, high = (np.clip(cells, 0, [columns - 1, rows - 1]) for cells in edge_index.cells(segments, CELL_PT))
+    begin, items = edge_index.lists(low, high, columns, rows)
+    return Walls(segments, inside, begin, items, columns, rows, (d, d, w - d, h - d))
 
 
 @dataclass(frozen=True, eq=False)

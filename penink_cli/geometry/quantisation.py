@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from penink_cli.geometry import edge_index
 from penink_cli.geometry.sides import rounded_beside_samples
 from penink_cli.ground.model import EdgeList, Floats, Ints
 
@@ -62,14 +63,7 @@ def _merged(grid: Ints, ends: Ints, strength: Floats) -> tuple[Ints, Ints, Float
 def _near_pairs(grid: Ints, ends: Ints) -> Ints:
     """Pairs (p, 2) of edges whose bounding boxes share a cell and overlap."""
     low, high = grid[ends].min(axis=1), grid[ends].max(axis=1)
-    first, last = low // _CELL, high // _CELL
-    spans = last - first + 1
-    counts = spans.prod(axis=1)
-    edge = np.repeat(np.arange(len(ends)), counts)
-    offset = np.arange(len(edge)) - np.repeat(np.cumsum(counts) - counts, counts)
-    cell = (first[edge, 1] + offset // spans[edge, 0]) * (1 << 24) + first[edge, 0] + offset % spans[edge, 0]
-    order = np.argsort(cell, kind="stable")
-    cell, edge = cell[order], edge[order]
+    cell, edge = edge_index.touched(low // _CELL, high // _CELL, 1 << 24)
     later = np.searchsorted(cell, cell, side="right") - np.arange(len(cell)) - 1
     one = np.repeat(np.arange(len(cell)), later)
     other = one + 1 + np.arange(len(one)) - np.repeat(np.cumsum(later) - later, later)

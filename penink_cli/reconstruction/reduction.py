@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from penink_cli.geometry import edge_index
 from penink_cli.ground import threads as threading
 from penink_cli.ground.errors import ParameterError
 from penink_cli.ground.model import EdgeList, Floats
@@ -14,8 +15,6 @@ from penink_cli.reconstruction.camera import camera_blur
 from penink_cli.reconstruction.extraction import segments, walkable
 from penink_cli.reconstruction.fit import AREA, POINT, fit_plain, fit_samples
 from penink_cli.reconstruction.shrinking import shrunk
-
-Ints32 = npt.NDArray[np.int32]
 
 FITS = ("none", "lsq")
 
@@ -83,25 +82,14 @@ def _take_near_edges(values: npt.NDArray[np.float32], edges: EdgeList, out: Floa
     _walls.near(*segments(edges, width, height), _NEAR, near)
     lines = segments(edges, old_width, old_height)
     ground = walkable(edges, old_width, old_height)
-    first, items = _buckets(lines, old_width, old_height)
+    across, down = int(old_width // _CELL) + 2, int(old_height // _CELL) + 2
+    index = edge_index.lists(*edge_index.cells(np.column_stack(lines), _CELL), across, down)
     factor = min(_clean.MAX_REACH - 1, max(old_width / width, old_height / height))
 
-    def rows(begin: int, end: int) -> None:
+    def rows(first: int, last: int) -> None:
         _clean.resample(
-            values, ground, *lines, _CELL, first, items, begin, end, round(factor), _SPREAD * factor,
+            values, ground, *lines, _CELL, across, *index, first, last, round(factor), _SPREAD * factor,
             (_STIFFNESS * factor) ** 2, near, out,
         )  # fmt: skip
 
     threading.share(threading.ranges(rows, height, _BAND_ROWS), threading.count(threads))
-
-
-def _buckets(lines: tuple[Floats, Floats, Floats, Floats], width: int, height: int) -> tuple[Ints32, Ints32]:
-    rows, columns = int(height // _CELL) + 2, int(width // _CELL) + 2
-    counts = np.zeros((rows, columns), np.int32)
-    none = np.zeros(1, np.int32)
-    _walls.bucket(*lines, _CELL, counts, none, False)
-    ends = np.cumsum(counts.ravel()).astype(np.int32)
-    first = np.concatenate([ends, ends[-1:]])[: rows * columns].reshape(rows, columns).copy()
-    items = np.zeros(max(1, int(ends[-1])), np.int32)
-    _walls.bucket(*lines, _CELL, first, items, True)
-    return first, items

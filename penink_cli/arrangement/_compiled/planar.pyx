@@ -4,6 +4,9 @@
 Coordinates are whole multiples of `arrangement.planar.UNIT`, so every predicate is exact in 64 bits
 (a frame of 2²⁴ units squares to 2⁴⁸). All changes go through `fits`, which is why an
 arrangement built here is one by construction.
+
+Segments come and go one by one: out and in again takes .3 µs, making the lists of `geometry.edge_index` anew 800
+(`python -m tests.benchmarks.edge_index`).
 """
 
 from libc.math cimport floor

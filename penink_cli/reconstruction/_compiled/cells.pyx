@@ -1,5 +1,10 @@
 # cython: boundscheck=False, wraparound=False, cdivision=True
-"""The edges of a scene sorted into the unit cells that they touch, and those of crowded cells into finer ones."""
+"""The edges of a scene sorted into the unit cells that they touch, and those of crowded cells into finer ones.
+
+The lists of `geometry.edge_index` hold an edge in each cell of its bounding box. On the same cells an edge of camera's
+is in 43 cells so and in 9 here, and a look meets 1.9 edges instead of 1.3; of edges 128 samples long it meets 97
+instead of 4. Building takes .75 ms instead of 9.5 (`python -m tests.benchmarks.edge_index`).
+"""
 
 from penink_cli.reconstruction._compiled.scene cimport CROWD, FINE, PAD, Scene, ints, span, within
 

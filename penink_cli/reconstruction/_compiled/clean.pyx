@@ -241,13 +241,13 @@ cdef inline bint _sees(
 
 def resample(
     float[:, ::1] values, Ground ground, double[::1] ax, double[::1] ay, double[::1] bx, double[::1] by, double cell,
-    int[:, ::1] first, int[::1] items, Py_ssize_t first_row, Py_ssize_t last_row, int steps, double spread,
-    double stiffness, float[:, ::1] near, double[:, ::1] out,
+    Py_ssize_t columns, long long[::1] begin, long long[::1] items, Py_ssize_t first_row, Py_ssize_t last_row,
+    int steps, double spread, double stiffness, float[:, ::1] near, double[:, ::1] out,
 ) -> None:
     """Fill new samples of some rows, those with a finite `near`, each from the pixels that its place reaches.
 
-    first: (rows, columns + 1 as one flat run) offsets of `items` by cell, as of `bucket`. spread, stiffness:
-    as of `_plane`, the weights being a Gaussian.
+    begin, items: which edges are near each square of `cell` pixels, `columns` of them in a row, as of
+    `geometry.edge_index.lists`. spread, stiffness: as of `_plane`, the weights being a Gaussian.
     """
     cdef Py_ssize_t i, j, k, ci, cj
     cdef int pi, pj, di, dj
@@ -280,8 +280,8 @@ def resample(
                         visible = True
                         for ci in range(<Py_ssize_t>(min(y, py) / cell), <Py_ssize_t>(max(y, py) / cell) + 1):
                             for cj in range(<Py_ssize_t>(min(x, px) / cell), <Py_ssize_t>(max(x, px) / cell) + 1):
-                                for k in range(first[ci, cj], first[ci, cj + 1]):
-                                    if not _sees(ax, ay, bx, by, items[k], x, y, px, py):
+                                for k in range(begin[ci * columns + cj], begin[ci * columns + cj + 1]):
+                                    if not _sees(ax, ay, bx, by, <int>items[k], x, y, px, py):
                                         visible = False
                         if visible:
                             seen[steps + di] |= one << (steps + dj)

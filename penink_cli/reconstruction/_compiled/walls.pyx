@@ -1,7 +1,7 @@
 # cython: boundscheck=False, wraparound=False, cdivision=True
-"""Compiled: edges drawn into a grid of pixels, as walls between centres, distances, lists by cell and regions."""
+"""Compiled: edges drawn into a grid of pixels, as walls between centres, distances and regions."""
 
-from libc.math cimport ceil, floor, sqrt
+from libc.math cimport ceil, sqrt
 
 RIGHT = 1  # an edge passes between this pixel's centre and the next in the row
 DOWN = 2  # … and the one below
@@ -103,46 +103,6 @@ def near(
                             if told:
                                 nearest[i, j] = <int>e
                         j += 1
-                i += 1
-
-
-def bucket(
-    double[::1] ax, double[::1] ay, double[::1] bx, double[::1] by, double cell, int[:, ::1] first, int[::1] items,
-    bint fill,
-) -> None:
-    """Count (fill false), then list, the edges whose bounding box meets each square cell.
-
-    first: (rows, columns) counts on the first call; then, as offsets of each cell's end, lowered to its start.
-    """
-    cdef Py_ssize_t e, i, j
-    cdef double dx, dy, left, right, low, high
-    cdef Py_ssize_t rows = first.shape[0]
-    cdef Py_ssize_t columns = first.shape[1]
-    with nogil:
-        for e in range(ax.shape[0]):
-            dx = bx[e] - ax[e]
-            dy = by[e] - ay[e]
-            i = max(0, <Py_ssize_t>floor(min(ay[e], by[e]) / cell))
-            while i < rows and i * cell <= max(ay[e], by[e]):
-                low = 0.0
-                high = 1.0
-                if dy != 0:
-                    left = (i * cell - ay[e]) / dy
-                    right = ((i + 1) * cell - ay[e]) / dy
-                    low = max(low, min(left, right))
-                    high = min(high, max(left, right))
-                left = ax[e] + low * dx
-                right = ax[e] + high * dx
-                if left > right:
-                    left, right = right, left
-                j = max(0, <Py_ssize_t>floor(left / cell - 1e-6))
-                while j < columns and j * cell <= right + 1e-6 * cell:
-                    if fill:
-                        first[i, j] -= 1
-                        items[first[i, j]] = e
-                    else:
-                        first[i, j] += 1
-                    j += 1
                 i += 1
 
 
