@@ -11,7 +11,8 @@ import numpy.typing as npt
 
 from penink_cli.blasting.sheet import CELL_PT, coverage, resample
 from penink_cli.composition.filters import blurred
-from penink_cli.ground.model import Floats, LineChoice, Lines, Strokes
+from penink_cli.ground.model import Floats, Ints, LineChoice, Lines, Strokes
+from penink_cli.lines.choice import chosen
 from penink_cli.lines.strokes import line_strokes
 
 #: Light lines: how broad the broadest is, and how many there may be.
@@ -20,6 +21,13 @@ WHITE = LineChoice(pen_pt=1.8, density=0.12, per_inch2=5.0)
 AROUND_PT, DARK, FULL = 3.0, 0.35, 0.65
 #: What is no further than this from a dark line is told by it.
 TOLD_PT = 1.6
+
+
+def with_room(lines: Lines, width_pt: float, height_pt: float) -> Ints:
+    """Indices of the lines, dark and light, that a drawing of that size, and so a smaller one, has room for."""
+    dark = chosen(lines, width_pt, height_pt, LineChoice())
+    light = chosen(lines, width_pt, height_pt, WHITE, white=True)
+    return np.sort(np.concatenate([dark, light]))
 
 
 def told(

@@ -7,7 +7,15 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from penink_cli.ground.streams import writing
-from penink_cli.options.common import Finite, filter_options, processors, reporter, threads_option, verbose_option
+from penink_cli.options.common import (
+    LENGTH,
+    Finite,
+    filter_options,
+    processors,
+    reporter,
+    threads_option,
+    verbose_option,
+)
 from penink_cli.options.inputs import only_one_standard_input, photo_options, read_directions, read_photo
 
 if TYPE_CHECKING:
@@ -19,6 +27,7 @@ if TYPE_CHECKING:
 @photo_options
 @click.option("--black/--white", "black", default=None, help="Only dark lines, or only light ones.  [default: both]")
 @click.option("--min-length", type=Finite(least=0), metavar="N", help="Shortest line, pixels.  [default: by the size]")
+@click.option("--seen-at", type=LENGTH, help="Only lines that a drawing of this width, or a smaller one, has room for.")
 @click.option(
     "--directions",
     "directions_file",
@@ -34,6 +43,7 @@ def detect_lines(
     max_pixels: int,
     black: bool | None,
     min_length: float | None,
+    seen_at: float | None,
     directions_file: str | None,
     threads: int | None,
     verbose: bool,
@@ -70,6 +80,10 @@ def detect_lines(
         directions=at_size if field is not None else None,
         threads=threads or processors(),
     )
+    if seen_at is not None:
+        from penink_cli.blasting import telling
+
+        found = found.chosen(telling.with_room(found, seen_at, seen_at * rows / columns))
     spots = int((found.breadth > 0).sum())
     reporter(verbose)(f"{len(found)} lines, {int(found.white.sum())} of them light, {spots} spots")
     with writing(output, binary=False) as out:

@@ -42,6 +42,7 @@ COMPOSED_DPI = 288.0  # as `compose` has it
 PRINTER_DPI = 600.0
 POSTER_DPI = 1152.0  # pixels an inch that an illustration is made from: those of a drawing four times as wide
 ARCHIVE = ".penink"
+FIELD_SIDE = 64  # samples of directions along the longer side of an archive
 WORTH = 120.0  # squared grey levels a bit that a chain of edges of an archive saves
 DEVICE_SIDE = 254  # samples a side that a device is sent at the most
 
@@ -239,7 +240,8 @@ class _Drawing:
             edges = self.thinned(edges, grey, size)
         lines = None
         if "lines" in self.stages:
-            lines = self.run("detect-lines", [*self.words("lines", "detect-lines"), *photo], "lines.json")
+            told = [*self.words("lines", "detect-lines"), *self.seen_at()]
+            lines = self.run("detect-lines", [*told, *photo], "lines.json")
         directions = self.directions(photo, edges, lines)
         if of_illustrations(self.ending):
             samples = self.run("extract-samples", ["-e", edges, grey], "samples.pgm")
@@ -263,9 +265,13 @@ class _Drawing:
         else:
             self.chain.run(by, [*page, hatching, *over], output)
 
+    def seen_at(self) -> list[str]:
+        """What is told to filters that leave out what the drawing of an archive would not show."""
+        return ["--seen-at", repr(self.width)] if self.ending == ARCHIVE else []
+
     def thinned(self, edges: str, grey: str, size: tuple[int, int]) -> str:
         """The edges that are worth their bytes, and those that will be outlined."""
-        told = ["--worth", repr(WORTH), "--seen-at", repr(self.width), "--photo", grey]
+        told = ["--worth", repr(WORTH), *self.seen_at(), "--photo", grey]
         if "outline" in self.stages:
             choice = self.stages["outline"]
             told += ["--keep-strength", str(choice.get("min-strength", 0))]
@@ -303,6 +309,8 @@ class _Drawing:
         if own is not None and own.lower().endswith(".pgm"):
             return own
         told = self.words("directions", "detect-directions") if "directions" in self.stages else []
+        if self.ending == ARCHIVE and "size" not in self.stages.get("directions", {}):
+            told += ["--size", str(FIELD_SIDE)]
         told += ["--lines", lines] if lines else []
         told += ["--strokes", own] if own is not None else []
         return self.run("detect-directions", ["-e", edges, *told, *photo], "directions.pgm")

@@ -6,14 +6,14 @@ first, the eighth set on all but the last), then one stretch of the adaptive cod
 =========  =========================================  ==========================================
 ``PIs1``   width, height, maxval                      samples, row by row, by their neighbours
 ``PIs2``   width, height, maxval                      the same, by neighbours that no edge hides
-``PId1``   columns, rows                              directions: angles row by row, then confidence
+``PId2``   columns, rows                              directions: angles row by row, then confidence
 ``PIt1``   number of bytes                            a text, byte by byte
 =========  =========================================  ==========================================
 
 `compact_edges` and `compact_lines` have two more. Samples beside edges are read with the same edges that they were
 written with: which neighbours tell something of a sample is not said again.
 
-Directions are kept as ANGLES angles of a half turn, 3.75° apart, and as confidence in sevenths, one for 4 × 4 samples.
+Directions are kept as ANGLES angles of a half turn, 5.625° apart (in ``PId1``, which is read, ANGLES_1), and as confidence in sevenths, one for 4 × 4 samples.
 """
 
 from __future__ import annotations
@@ -29,9 +29,10 @@ from penink_cli.formats._compiled.compact import Coder
 from penink_cli.ground.errors import FormatError, LimitError
 from penink_cli.ground.model import Directions, EdgeList, Floats, GreyImage, Ints
 
-SAMPLES, SAMPLES_BESIDE, DIRECTIONS, TEXT = b"PIs1", b"PIs2", b"PId1", b"PIt1"
+SAMPLES, SAMPLES_BESIDE, TEXT = b"PIs1", b"PIs2", b"PIt1"
+DIRECTIONS, DIRECTIONS_1 = b"PId2", b"PId1"
 
-ANGLES = 48  # of a half turn: 0°, 45° and 90° are among them
+ANGLES, ANGLES_1 = 32, 48  # of a half turn: 0°, 45° and 90° are among them
 SURE = 7  # the highest level of confidence
 BLOCK = 4  # samples along a side that share one
 MAX_FIELD = 1 << 20  # samples of a direction field
@@ -135,9 +136,9 @@ def text_from(data: bytes) -> bytes:
 # --------------------------------------------------------------------------- directions
 
 
-def _angles() -> Floats:
-    """(ANGLES, 2) the double-angle vectors of the angles that are kept."""
-    double = [2 * math.pi * k / ANGLES for k in range(ANGLES)]
+def _angles(count: int) -> Floats:
+    """(count, 2) the double-angle vectors of the angles that are kept."""
+    double = [2 * math.pi * k / count for k in range(count)]
     return np.array([(round(math.cos(a), 12), round(math.sin(a), 12)) for a in double])
 
 
@@ -145,31 +146,33 @@ def directions_bytes(field: Directions) -> bytes:
     """A direction field, each sample at the nearest of the angles and levels that are kept. Raises LimitError."""
     rows, columns = field.cos2.shape
     _check_field(columns, rows)
-    angles = _angles()
+    angles = _angles(ANGLES)
     nearest = np.empty((rows, columns), np.int64)
     for i in range(rows):  # where nothing is known, both 0, it is the first angle
         nearest[i] = np.argmax(field.cos2[i, :, None] * angles[:, 0] + field.sin2[i, :, None] * angles[:, 1], axis=1)
     coder = Coder()
-    _code_angles(coder, nearest)
+    _code_angles(coder, nearest, ANGLES)
     coder.samples(_by_blocks(field.confidence), SURE)
     return DIRECTIONS + _numbers(columns, rows) + _finished(coder)
 
 
 def directions_from(data: bytes) -> Directions:
     """What `directions_bytes` wrote."""
-    (columns, rows), rest = _header(data, DIRECTIONS, 2)
+    first = data[:4] == DIRECTIONS_1
+    count = ANGLES_1 if first else ANGLES
+    (columns, rows), rest = _header(data, DIRECTIONS_1 if first else DIRECTIONS, 2)
     if not (columns and rows):
         raise FormatError(f"directions of {columns} x {rows} samples")
     _check_field(columns, rows)
     coder = Coder(rest)
     nearest = np.zeros((rows, columns), np.int64)
-    _code_angles(coder, nearest)
+    _code_angles(coder, nearest, count)
     levels = np.zeros((-(-rows // BLOCK), -(-columns // BLOCK)), np.int32)
     coder.samples(levels, SURE)
     _check_end(coder)
     if not levels.any():
         raise FormatError("confidence is 0 everywhere")
-    cos2, sin2 = np.moveaxis(_angles()[nearest], 2, 0)
+    cos2, sin2 = np.moveaxis(_angles(count)[nearest], 2, 0)
     confidence = levels.repeat(BLOCK, axis=0).repeat(BLOCK, axis=1)[:rows, :columns] / SURE
     return Directions(np.ascontiguousarray(cos2), np.ascontiguousarray(sin2), confidence)
 
@@ -193,8 +196,8 @@ def _by_blocks(confidence: npt.NDArray[np.floating]) -> npt.NDArray[np.int32]:
     return levels
 
 
-def _code_angles(coder: Coder, nearest: Ints) -> None:
-    """Angles (h, w), 0 … ANGLES − 1, row by row, each as its turn from what its neighbours let expect; in place."""
+def _code_angles(coder: Coder, nearest: Ints, count: int) -> None:
+    """Angles (h, w), 0 … count − 1, row by row, each as its turn from what its neighbours let expect; in place."""
     h, w = nearest.shape
     turns = np.zeros((2, w + 2), np.int64).tolist()  # of this row and the last, how large they were
     above: list[int] = [0] * (w + 2)
@@ -207,23 +210,23 @@ def _code_angles(coder: Coder, nearest: Ints) -> None:
                 return
             # The neighbours are told by their turns from the west one, so that the half turn is no seam.
             west = row[j] if j else ahead
-            north = west + _turn(above[j + 1] - west) if i else west
-            north_west = west + _turn(above[j] - west) if i and j else north
-            north_east = north + _turn(above[j + 2] - north) if i and j + 1 < w else north
+            north = west + _turn(above[j + 1] - west, count) if i else west
+            north_west = west + _turn(above[j] - west, count) if i and j else north
+            north_east = north + _turn(above[j + 2] - north, count) if i and j + 1 < w else north
             guess = (2 * (west + north) + north_east - north_west + 2) >> 2
             rough = abs(west - north_west) + abs(north - north_west) + abs(north - north_east)
             near = last[j + 1] + last[j + 2] + before[j]
             aside = 7 * _within_3(west - guess) + _within_3(north - guess)
-            turn = coder.number(_turn(given[j] - guess), _TURN, 12 * _size(near) + _size(rough), aside)
-            row[j + 1] = (guess + turn) % ANGLES
-            before[j + 1] = min(ANGLES, abs(turn))
+            turn = coder.number(_turn(given[j] - guess, count), _TURN, 12 * _size(near) + _size(rough), aside)
+            row[j + 1] = (guess + turn) % count
+            before[j + 1] = min(count, abs(turn))
         above = row
         nearest[i] = row[1:-1]
 
 
-def _turn(steps: int) -> int:
-    """The same turn between −ANGLES / 2 and ANGLES / 2."""
-    return (steps + ANGLES // 2) % ANGLES - ANGLES // 2
+def _turn(steps: int, count: int) -> int:
+    """The same turn between −count / 2 and count / 2."""
+    return (steps + count // 2) % count - count // 2
 
 
 def _size(value: int) -> int:

@@ -185,7 +185,7 @@ def _edges(data: bytes, max_pixels: int) -> EdgeList:
 
 
 def _directions(data: bytes, samples: GreyImage, max_pixels: int) -> Directions:
-    if data.startswith(compact.DIRECTIONS):
+    if data.startswith((compact.DIRECTIONS, compact.DIRECTIONS_1)):
         found = compact.directions_from(data)
     else:
         found = directions.read(io.BytesIO(data), "", max_pixels)
@@ -195,7 +195,7 @@ def _directions(data: bytes, samples: GreyImage, max_pixels: int) -> Directions:
 
 
 def _lines(data: bytes) -> Lines:
-    if data.startswith(compact_lines.LINES):
+    if data.startswith((compact_lines.LINES, compact_lines.LINES_1)):
         return compact_lines.lines_from(data)
     return lines_format.read(io.BytesIO(data), "")
 

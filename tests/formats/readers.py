@@ -96,7 +96,7 @@ def _compact(data: bytes) -> Any:
     try:
         if data.startswith((compact.SAMPLES, compact.SAMPLES_BESIDE)):
             return compact.samples_from(data, MAX_PIXELS, EDGES)
-        if data.startswith(compact_lines.LINES):
+        if data.startswith((compact_lines.LINES, compact_lines.LINES_1)):
             return compact_lines.lines_from(data)
         if data.startswith((compact_edges.EDGES, compact_edges.EDGES_1)):
             return compact_edges.edges_from(data)

@@ -30,10 +30,10 @@ def test_lines_come_back_near_and_then_exactly(face):
     assert (back.width, back.height) == (512, 512) and len(back) <= len(face)
     assert (np.diff(back.rank) <= 0).all()
     for i in range(20):
-        assert back.rank[i] == pytest.approx(face.rank[i], abs=1 / 32 + 1e-9) and back.white[i] == face.white[i]
-        assert np.abs(back[i][0] - face[i][0]).max() < 0.25
+        assert back.rank[i] == pytest.approx(face.rank[i], abs=1 / 8 + 1e-9) and back.white[i] == face.white[i]
+        assert np.abs(back[i][0] - face[i][0]).max() < 0.45
     assert back.breadth.sum() == pytest.approx(face.breadth.sum(), rel=0.05)
-    assert len(packed) < 6500
+    assert len(packed) < 4500
 
 
 def test_no_lines_and_a_single_spot():
@@ -51,7 +51,7 @@ def test_no_lines_and_a_single_spot():
 def test_what_is_cut_short_is_refused(cut, face):
     packed = compact_lines.lines_bytes(face)
     with pytest.raises(FormatError):
-        compact_lines.lines_from(packed[:cut] if cut else b"PIl1")
+        compact_lines.lines_from(packed[:cut] if cut else b"PIl2")
 
 
 def test_damage_is_refused_or_sound(face):
