@@ -44,6 +44,9 @@ if TYPE_CHECKING:
 @click.option("--width", type=LENGTH, help="Width of the picture on paper: 4in, 100mm, 288 (points).")
 @click.option("--dpi", type=POSITIVE, metavar="N", help="Size on paper by the samples per inch, instead of --width.")
 @click.option("--pen", type=LENGTH, help="Draw all strokes with one pen of this width.  [default: the texture's]")
+@click.option(
+    "--finer", type=Finite(0.1, 1), default=1.0, metavar="F", help="Draw with this part of the pens, lines so much closer."
+)
 @click.option("--gamma", type=Finite(0.05, 20), default=1.0, metavar="G", help="Tone curve: grey is raised to it.")
 @click.option(
     "--seed",
@@ -109,6 +112,7 @@ def blast(
     width: float | None,
     dpi: float | None,
     pen: float | None,
+    finer: float,
     gamma: float,
     seed: int,
     device_dpi: float | None,
@@ -133,6 +137,7 @@ def blast(
     """
     from penink_cli.blasting.blast import TICKS
     from penink_cli.blasting.blast import blast as blast_tone
+    from penink_cli.blasting.pens import finer_texture
     from penink_cli.blasting.rules import rule as find_rule
     from penink_cli.formats import strokes as strokes_format
     from penink_cli.ground.model import Strokes
@@ -142,7 +147,7 @@ def blast(
         raise click.UsageError("give one of --width and --dpi")
     piped_texture = texture_name if texture_name == "-" else None
     only_one_standard_input(file, edges_file, directions_file, lines_file, *ink_files, piped_texture)
-    texture = find_texture(texture_name)
+    texture = finer_texture(find_texture(texture_name), finer, device_dpi)
     edges = read_edges(edges_file, max_pixels)
     image = read_grey(file, max_pixels) if width is None else read_to_blast(file, max_pixels)
     rows, columns = image.values.shape

@@ -219,7 +219,26 @@ class _Drawing:
         self.aspect = aspect
         self.width = width
         self.on_paper = ["--width", repr(width)]
+        self.device_dpi = device_dpi
         self.device = ["--device-dpi", "none" if device_dpi is None else repr(device_dpi)]
+
+    def with_finer_pens(self) -> None:
+        """Pens that suit a small print, unless the user has named one; an archive is drawn with them when it is."""
+        from penink_cli.ground import pens
+
+        by = pens.part(self.width)
+        if by == 1.0 or "pen" in self.given or of_illustrations(self.ending):
+            return
+        for stage, name, usual in (("blast", "pen", None), ("outline", "weight", 0.7), ("lines", "pen", 1.3)):
+            if stage not in self.stages:
+                continue
+            told = self.stages[stage]
+            name = "pen" if "pen" in told else name
+            if (pen := told.get(name, usual)) is not None:
+                width = parse_length(pen) if isinstance(pen, str) else float(pen)
+                told[name] = pens.finer(width, by, self.device_dpi)
+            if stage == "blast":
+                told["finer"] = by
 
     def words(self, stage: str, filter_name: str) -> list[str]:
         """What the stage's options say to the filter."""
@@ -233,6 +252,7 @@ class _Drawing:
 
     def draw(self, file: str | None, shape: tuple[int, ...], output: str | None, page: list[str]) -> None:
         """All of it."""
+        self.with_finer_pens()
         photo = [*shlex.split(photo_words()), "-" if file is None else file]
         grey, size = self.composed(photo, shape)
         edges = self.run("detect-edges", [*self.words("edges", "detect-edges"), grey], "e.json")

@@ -22,6 +22,11 @@ if TYPE_CHECKING:
 @click.option("--width", type=LENGTH, help="Width of the picture on paper: 4in, 100mm, 288 (points).")
 @click.option("--scale", type=POSITIVE, metavar="S", help="Size relative to the natural one, instead of --width.")
 @click.option(
+    "--pen",
+    type=LENGTH,
+    help="Draw everything with one pen of this width.  [default: the layers', finer on prints under 4 in]",
+)
+@click.option(
     "--device-dpi",
     type=DeviceDpi(),
     default="600",
@@ -51,6 +56,7 @@ def render(
     quiet: bool,
     width: float | None,
     scale: float | None,
+    pen: float | None,
     device_dpi: float | None,
     seed: int,
     chosen: str | None,
@@ -77,8 +83,9 @@ def render(
     which = range(len(illustration.layers)) if chosen is None else [_number(illustration, chosen)]
     with progress(steps(illustration), "render", quiet) as advance:
         layers = layer_strokes(
-            illustration, width_pt, device_dpi=device_dpi, seed=seed, threads=threads or processors(), advance=advance
-        )
+            illustration, width_pt, device_dpi=device_dpi, seed=seed, threads=threads or processors(),
+            pen_pt=pen, advance=advance,
+        )  # fmt: skip
     drawn = Strokes.joined([part for i in which for part in layers[i]])
     name = illustration.layers[which[0]].name if len(which) == 1 else None
     texture = illustration.layers[which[0]].texture.name if len(which) == 1 else None

@@ -13,7 +13,8 @@ first, the eighth set on all but the last), then one stretch of the adaptive cod
 `compact_edges` and `compact_lines` have two more. Samples beside edges are read with the same edges that they were
 written with: which neighbours tell something of a sample is not said again.
 
-Directions are kept as ANGLES angles of a half turn, 5.625° apart (in ``PId1``, which is read, ANGLES_1), and as confidence in sevenths, one for 4 × 4 samples.
+Directions are kept as ANGLES angles of a half turn, 5.625° apart (in ``PId1``, which is read, ANGLES_1),
+and as confidence in sevenths, one for 4 × 4 samples.
 """
 
 from __future__ import annotations

@@ -6,7 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from penink_cli.ground.model import Floats, GreyImage, Illustration, Strokes
+from penink_cli.blasting.pens import finer_texture
+from penink_cli.ground import pens
+from penink_cli.ground.model import Floats, GreyImage, Illustration, Layer, Strokes
 from penink_cli.illustration.drawing import Advance, enlarged, grey_size, lined, outlined, tone_curve
 
 LEAST_TONE = 1 / 255  # below it an overlay is paper
@@ -27,6 +29,7 @@ def layer_strokes(
     device_dpi: float | None = 600.0,
     seed: int = 0,
     threads: int | None = None,
+    pen_pt: float | None = None,
     advance: Advance = lambda done: None,
 ) -> list[tuple[Strokes, Strokes]]:
     """Hatching and outline strokes of each layer, bottom first, for a picture width_pt wide.
@@ -36,8 +39,12 @@ def layer_strokes(
     twice. What is left over along the layers' common borders, where neither is free to add ink, is fed back to all of
     them. A layer with the threshold rule is hatched as an illustration that draws itself is on a device, whatever the
     others are.
+
+    pen_pt: one pen for all strokes; without it small prints have finer ones (`ground.pens`).
     """
     height_pt = width_pt * illustration.height / illustration.width
+    layers = tuple(_with_pens(layer, width_pt, device_dpi, pen_pt) for layer in illustration.layers)
+    illustration = replace(illustration, layers=layers)
     size = grey_size(width_pt, illustration.height / illustration.width)
     outlines: list[Strokes] = []
     for layer in illustration.layers:
@@ -74,6 +81,30 @@ def layer_strokes(
     advance(left)
     assert best is not None
     return list(zip(best[1], outlines))
+
+
+def _with_pens(layer: Layer, width_pt: float, device_dpi: float | None, pen_pt: float | None) -> Layer:
+    """The layer with the one pen there is, or with pens that suit the size.
+
+    One that is hatched as by a device keeps its own: the device knows no other.
+    """
+    outline = layer.outline
+    if pen_pt is not None:
+        outline = None if outline is None else replace(outline, pen_pt=pen_pt, even=True)
+        return replace(layer, pen_pt=pen_pt, outline=outline, line=replace(layer.line, pen_pt=pen_pt, even=True))
+    by = pens.part(width_pt)
+    if by == 1.0 or layer.rule == "threshold":
+        return layer
+
+    def finer(pen_pt: float) -> float:
+        return pens.finer(pen_pt, by, device_dpi)
+
+    return replace(
+        layer, pen_pt=None if layer.pen_pt is None else finer(layer.pen_pt),
+        texture=finer_texture(layer.texture, by, device_dpi),
+        outline=None if outline is None else replace(outline, pen_pt=finer(outline.pen_pt)),
+        line=replace(layer.line, pen_pt=finer(layer.line.pen_pt)),
+    )  # fmt: skip
 
 
 def _together(illustration: Illustration) -> bool:

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from penink_cli.ground import pens
 from penink_cli.ground.model import Floats, LineChoice, Lines, Strokes
 from penink_cli.lines.choice import chosen, lengths
 
@@ -18,11 +19,15 @@ FINEST, TIP_PT, TIP = 0.25, 12.0, 0.45
 def line_strokes(
     lines: Lines, width_pt: float, height_pt: float, choice: LineChoice, white: bool = False
 ) -> Strokes:
-    """Strokes along the dark lines, or the white ones, the most telling first, on a sheet of width_pt × height_pt."""
+    """Strokes along the dark lines, or the white ones, the most telling first, on a sheet of width_pt × height_pt.
+
+    A small print, whose pens are finer, has room for the lines of one that is as much larger.
+    """
+    by = 1.0 if choice.even else pens.part(width_pt)
     scale = np.array([width_pt / lines.width, height_pt / lines.height])
     chains: list[Floats] = []
     widths: list[Floats | float] = []
-    for i in chosen(lines, width_pt, height_pt, choice, white).tolist():
+    for i in chosen(lines, width_pt / by, height_pt / by, choice, white).tolist():
         points, weight = lines[i] * scale, lines.weight[lines.first[i] : lines.first[i + 1]]
         if lines.breadth[i] > 0:
             breadth = float(lines.breadth[i]) * math.sqrt(float(scale[0] * scale[1]))

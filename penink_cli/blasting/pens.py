@@ -1,0 +1,23 @@
+"""Textures with finer pens, for small prints."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from penink_cli.ground.model import Texture
+from penink_cli.ground.pens import finer
+
+
+def finer_texture(texture: Texture, by: float, device_dpi: float | None) -> Texture:
+    """The texture with such pens, and its lines as much closer as they may be."""
+    if by >= 1.0:
+        return texture
+    widths = [finer(width, by, device_dpi) for width in texture.strokes.widths.tolist()]
+    layers = []
+    for layer in texture.layers:
+        pen = finer(layer.pen_pt, by, device_dpi)
+        layers.append(replace(layer, pen_pt=pen, spacing_pt=layer.spacing_pt * pen / layer.pen_pt))
+    strokes = replace(texture.strokes, widths=np.array(widths))
+    return replace(texture, strokes=strokes, layers=tuple(layers))
