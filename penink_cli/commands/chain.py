@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from penink_cli.ground import streams
+from penink_cli.ground.changes import State, note, noting
 from penink_cli.ground.errors import FormatError, PeninkError
 from penink_cli.main import penink
 from penink_cli.options.common import NameOrFile, warning_once
@@ -34,14 +35,42 @@ FILTERS = {
 _NOT_A_STYLE_S = {"output", "max_pixels", "quiet", "help", "threads", "verbose", "width", "dpi", "device_dpi", "maxval"}
 
 
+class Kept:
+    """What filters have made of what: while that is the same, they need not run again."""
+
+    def __init__(self) -> None:
+        self._made: dict[tuple[str, ...], tuple[dict[str, State], bytes]] = {}
+        self._used: set[tuple[str, ...]] = set()
+
+    def made(self, call: tuple[str, ...]) -> bytes | None:
+        """What a call made, if nothing that it read has changed."""
+        read, result = self._made.get(call, ({}, None))
+        if result is None or any(streams.state(path) != state for path, state in read.items()):
+            return None
+        for path, state in read.items():
+            note(path, state)
+        self._used.add(call)
+        return result
+
+    def keep(self, call: tuple[str, ...], read: dict[str, State], result: bytes) -> None:
+        """Remember what a call has read and made."""
+        self._made[call] = read, result
+        self._used.add(call)
+
+    def forget_others(self) -> None:
+        """Forget what nobody has asked for since the last time."""
+        self._made = {call: made for call, made in self._made.items() if call in self._used}
+        self._used = set()
+
+
 class Chain:
-    """say: receives each command line, once it has run. step: is told after each filter."""
+    """say: receives each command line, once it has run. step: is told after each filter. kept: from chains before."""
 
     def __init__(
         self, bench: dict[str, bytes], taken: Iterable[str | None], threads: int | None, max_pixels: int | None,
-        say: Callable[[str], None], step: Callable[[], None],
+        say: Callable[[str], None], step: Callable[[], None], kept: Kept | None = None,
     ):  # fmt: skip
-        self._bench, self._say, self._step = bench, say, step
+        self._bench, self._say, self._step, self._kept = bench, say, step, kept
         self._taken = {path for path in taken if path is not None}
         self._common = {"quiet": "--quiet"}
         if max_pixels is not None:
@@ -67,16 +96,23 @@ class Chain:
         known = {parameter.name for parameter in command.params}
         common = [word for parameter, word in self._common.items() if parameter in known]
         target = [] if output is None else ["-o", output]
-        try:
-            command.main([*common, *words, *target], prog_name=_program(), standalone_mode=False)
-        except PeninkError:
-            if may_fail:
-                return False
-            raise
-        self._say(shlex.join(["penink", filter_name, *words, *target]))
+        call = (filter_name, *words)
+        made = self._kept.made(call) if self._kept and output in self._bench else None
+        if made is not None:
+            self._bench[str(output)] = made
+        else:
+            with noting() as read:
+                try:
+                    command.main([*common, *words, *target], prog_name=_program(), standalone_mode=False)
+                except PeninkError:
+                    if may_fail:
+                        return False
+                    raise
+            if self._kept and output in self._bench:
+                self._kept.keep(call, read, self._bench[str(output)])
+        self._say(shlex.join(["penink", *call, *target]))
         self._step()
         return True
-
 
     def lines(self, name: str) -> int:
         """How many lines of text a file on the bench has: of strokes, one more than there are strokes."""

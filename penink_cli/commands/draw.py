@@ -6,20 +6,23 @@ import json
 import math
 import os
 import shlex
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import click
 from click.core import ParameterSource
 
-from penink_cli.commands.chain import Chain, bench, check, found, worded, words
+from penink_cli.commands.chain import Chain, Kept, bench, check, found, worded, words
 from penink_cli.commands.compose import composition_options
-from penink_cli.ground.errors import in_quotes
+from penink_cli.ground import streams
+from penink_cli.ground.errors import PeninkError, StreamError, in_quotes
 from penink_cli.ground.units import parse_length
 from penink_cli.options.common import (
     LENGTH,
     DeviceDpi,
     Finite,
-    filter_options,
+    output_options,
+    reporter,
     threads_option,
     verbose_option,
     warn,
@@ -60,8 +63,24 @@ _TOLD = {
 
 
 @click.command()
-@filter_options
+@click.argument("files", nargs=-1, metavar="[FILE]...", type=click.Path(allow_dash=True))
+@output_options
 @photo_options
+@click.option(
+    "--out-dir",
+    type=click.Path(file_okay=False),
+    metavar="DIR",
+    help="Draw each photo into a file of its name in this folder, which is made if need be.",
+)
+@click.option(
+    "--as",
+    "wanted",
+    type=click.Choice([ending.removeprefix(".") for ending in endings()]),
+    help="What to write, where no ending of -o says it.  [default: ps]",
+)
+@click.option(
+    "--watch", "watching", is_flag=True, help="Draw again whenever the photo or another file of the call changes."
+)
 @click.option(
     "--style",
     "style_name",
@@ -107,56 +126,164 @@ _TOLD = {
 @threads_option
 @verbose_option
 def draw(
-    file: str | None,
+    files: tuple[str, ...],
     output: str | None,
     max_pixels: int,
-    quiet: bool,
     style_name: str,
     width: float | None,
     height: float | None,
-    threads: int | None,
-    verbose: bool,
+    out_dir: str | None,
+    wanted: str | None,
+    watching: bool,
     **_: Any,
 ) -> None:
     """Turn a photo into a pen-and-ink drawing, the whole chain in one call.
 
-    The result is PostScript, or what the ending of -o says: ENDINGS. Of these .jsonl is the strokes, .penink the
-    illustration itself, which `penink render` draws at any size, and .html a page that draws it.
+    The result is PostScript, or what --as or the ending of -o says: ENDINGS. Of these .jsonl is the strokes, .penink
+    the illustration itself, which `penink render` draws at any size, and .html a page that draws it.
     --verbose prints the chain of filters that gives the same bytes.
+
+    With --out-dir any number of photos are drawn in one go; what cannot be read is named at the end, and the rest is
+    done. With --watch the drawing follows its photo, and the style, texture, mask or strokes given as files, until it
+    is interrupted; only what has changed is made anew, and a page reloads itself in the browser.
 
     \b
     penink draw photo.jpg -o photo.pdf
     penink draw photo.jpg --style engraving --width 24in --device-dpi 1200 | lpr
+    penink draw *.jpg --as svg --out-dir drawings
+    penink draw photo.jpg --directions strokes.svg --watch -o photo.html
     """
-    from penink_cli.options.progress import progress
-
     context = click.get_current_context()
     given = {name: value for name, value in context.params.items() if _is_given(context, name)}
-    ending = os.path.splitext(output or "-")[1].lower() or ".ps"  # a FIFO or device has no ending
-    if ending not in endings():
-        raise click.UsageError(f"-o {in_quotes(output or '')}: known endings are {', '.join(endings())}")
+    ending = _ending(output, out_dir, wanted, watching)
     if width is not None and height is not None:
         raise click.UsageError("give one of --width and --height")
-    own_texture = given.get("texture_name")
-    dashes = [path for path in (style_name, own_texture) if path == "-"]
-    only_one_standard_input(file, given.get("mask"), given.get("directions_file"), *dashes)
+    read = [path for name in ("mask", "directions_file") if (path := given.get(name)) is not None]
+    dashes = [path for path in (style_name, given.get("texture_name")) if path == "-"]
+    if out_dir is None and len(files) > 1:
+        raise click.UsageError("several photos need --out-dir DIR")
+    if (out_dir or watching) and ("-" in (*files, *read, *dashes) or not files):
+        raise click.UsageError(f"{'--out-dir' if out_dir else '--watch'} reads files, not standard input")
+    file = files[0] if files else None
+    only_one_standard_input(file, *read, *dashes)
     page = _page_words(ending, given)
     style = find_style(style_name)
     check(style, style_name)
-    stages = _told(style, given)
-    with bench() as files, progress(9, "draw", quiet) as advance:
+    call = _Call(context.params, given, ending, page, style)
+    if watching:
+        from penink_cli.options.watching import watch
+
+        page += ["--reload"] if ending == ".html" else []
+        kept = Kept()
+
+        def draw_again() -> None:
+            streams.keep_inputs([output], [file, *read])  # a file saved anew may have an old drawing's inode
+            _draw(call.read_anew(), file, output, on_bench, kept)
+
+        with bench() as on_bench:
+            watch(draw_again)
+    if out_dir is None:
+        with bench() as on_bench:
+            _draw(call, file, output, on_bench)
+        return
+    outputs = _names(files, out_dir, ending)
+    streams.keep_inputs(outputs, [*files, *read, *(path for path in (style_name, given.get("texture_name")) if path)])
+    _draw_all(call, files, outputs)
+
+
+@dataclass(frozen=True)
+class _Call:
+    """What the user has asked for, whatever the photo.
+
+    options: all of the call; given: those that the user has named. page: what the filter that writes is told of it.
+    """
+
+    options: dict[str, Any]
+    given: dict[str, Any]
+    ending: str
+    page: list[str]
+    style: Style
+
+    def read_anew(self) -> _Call:
+        """The same, with the style as its file is now."""
+        name = self.options["style_name"]
+        style = find_style(name)
+        check(style, name)
+        return replace(self, style=style)
+
+
+def _draw_all(call: _Call, files: tuple[str, ...], outputs: list[str]) -> None:
+    """Each photo into its file; PeninkError at the end for those that could not be drawn."""
+    from penink_cli.options.progress import progress
+
+    failed = []
+    with progress(len(files), "draw", call.options["quiet"]) as advance:
+        for file, output in zip(files, outputs):
+            try:
+                with bench() as on_bench:
+                    _draw(call, file, output, on_bench, quiet=True)
+            except (PeninkError, MemoryError) as error:
+                why = str(error) if isinstance(error, PeninkError) else "not enough memory"
+                failed.append(why if why.startswith(file) else f"{file}: {why}")
+            advance(1)
+    if failed:
+        raise PeninkError(f"{len(failed)} of {len(files)} photos could not be drawn: {'; '.join(failed)}")
+
+
+def _names(files: tuple[str, ...], out_dir: str, ending: str) -> list[str]:
+    """Where each photo is drawn, in a folder that is there afterwards; UsageError where two would be one file."""
+    outputs: dict[str, str] = {}
+    for file in files:
+        output = os.path.join(out_dir, os.path.splitext(os.path.basename(file))[0] + ending)
+        if output in outputs:
+            raise click.UsageError(f"{in_quotes(outputs[output])} and {in_quotes(file)} would both become {output}")
+        outputs[output] = file
+    try:
+        os.makedirs(out_dir, exist_ok=True)
+    except OSError as error:
+        raise StreamError(os.strerror(error.errno or 0), out_dir) from error
+    return list(outputs)
+
+
+def _ending(output: str | None, out_dir: str | None, wanted: str | None, watching: bool) -> str:
+    """The ending of what is to be written."""
+    own = os.path.splitext(output or "-")[1].lower()  # a FIFO or device has none
+    if own and own not in endings():
+        raise click.UsageError(f"-o {in_quotes(output or '')}: known endings are {', '.join(endings())}")
+    if out_dir is not None and (output is not None or watching):
+        raise click.UsageError(f"--out-dir does not go with {'--watch' if output is None else '-o'}")
+    if watching and output in (None, "-"):
+        raise click.UsageError("--watch needs -o FILE")
+    if own and wanted is not None and own != f".{wanted}":
+        raise click.UsageError(f"--as {wanted} and -o {in_quotes(output or '')} differ")
+    return own or f".{wanted or 'ps'}"
+
+
+def _draw(
+    call: _Call, file: str | None, output: str | None, files: dict[str, bytes], kept: Kept | None = None,
+    quiet: bool = False,
+) -> None:  # fmt: skip
+    """One photo. files: the bench that it is drawn on. kept: what filters have made before."""
+    from penink_cli.options.progress import progress
+
+    options, given, ending = call.options, call.given, call.ending
+    stages = _told(call.style, given)
+    width, max_pixels = options["width"], options["max_pixels"]
+    with progress(9, "draw", quiet or options["quiet"]) as advance:
         shape = read_colours(file, max_pixels).values.shape
         rows, columns = shape[:2]
-        if height is not None:
-            width = height * columns / rows
+        if options["height"] is not None:
+            width = options["height"] * columns / rows
         width = USUAL_WIDTH if width is None else width
         check_sheet(width, width * rows / columns, max_pixels)
-        taken = (file, output, given.get("mask"), given.get("directions_file"), own_texture)
+        taken = (file, output, given.get("mask"), given.get("directions_file"), given.get("texture_name"))
         limit = max_pixels if "max_pixels" in given else None
-        say = (lambda line: click.echo(line, err=True)) if verbose else (lambda line: None)
-        chain = Chain(files, taken, threads, limit, say, lambda: advance(1))
+        say = reporter(options["verbose"])
+        chain = Chain(files, taken, options["threads"], limit, say, lambda: advance(1), kept)
         device_dpi = given.get("device_dpi", None if on_screen(ending) else PRINTER_DPI)
-        _Drawing(chain, stages, given, width, rows / columns, ending, device_dpi).draw(file, shape, output, page)
+        _Drawing(chain, stages, given, width, rows / columns, ending, device_dpi).draw(file, shape, output, call.page)
+    if kept is not None:
+        kept.forget_others()
 
 
 draw.help = (draw.help or "").replace("ENDINGS", ", ".join(endings()))

@@ -14,9 +14,10 @@ from penink_cli.options.inputs import read_illustration
 @click.command(name="to-html")
 @filter_options
 @click.option("--title", default="Illustration", show_default=True, help="Of the page.")
+@click.option("--reload", is_flag=True, help="The page loads itself anew whenever its file has changed.")
 @click.option("--readable", is_flag=True, help="Keep the program's comments and layout.")
 def to_html(
-    file: str | None, output: str | None, max_pixels: int, title: str, readable: bool, **_: Any
+    file: str | None, output: str | None, max_pixels: int, title: str, readable: bool, reload: bool, **_: Any
 ) -> None:
     """Write an illustration as one web page that draws itself.
 
@@ -31,6 +32,6 @@ def to_html(
     from penink_cli.selfdrawing import html
 
     illustration = read_illustration(file, max_pixels)
-    page = html.write(illustration, title, readable)
+    page = html.write(illustration, title, readable, reload)
     with writing(output) as out:
         out.write(page)

@@ -26,6 +26,7 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, BinaryIO, NoReturn, cast
 
+from penink_cli.ground import changes
 from penink_cli.ground.errors import StreamError, printable
 
 if TYPE_CHECKING:
@@ -72,6 +73,13 @@ def workbench(files: dict[str, bytes]) -> Iterator[dict[str, bytes]]:
         yield files
     finally:
         _bench = before
+
+
+def state(path: str | None) -> changes.State:
+    """What tells whether an input has changed since."""
+    if path is None or path == "-":
+        return None
+    return _bench[path] if _bench is not None and path in _bench else changes.of_file(path)
 
 
 def on_bench(path: str | None) -> bool:
@@ -162,6 +170,7 @@ def reading(path: str | None) -> Iterator[BinaryIO]:
     """
     source = source_name(path)
     if path is not None and _bench is not None and path in _bench:
+        changes.note(path, _bench[path])
         yield cast(BinaryIO, io.BytesIO(_bench[path]))
         return
     if path is None or path == "-":
@@ -173,9 +182,13 @@ def reading(path: str | None) -> Iterator[BinaryIO]:
             raw = _Source(os.open(path, os.O_RDONLY | os.O_CLOEXEC | os.O_NOCTTY), source, owned=True)
         except (OSError, ValueError) as error:  # ValueError: a null character in the name
             why = _why(error) if isinstance(error, OSError) else str(error)
+            changes.note(path, None)
             raise StreamError(why, source) from error
     with raw, io.BufferedReader(raw, BUFFER) as stream:
-        _keep(os.fstat(raw.fileno()), source)
+        status = os.fstat(raw.fileno())
+        _keep(status, source)
+        if source != STDIN:
+            changes.note(source, changes.of_status(status))
         yield stream
 
 

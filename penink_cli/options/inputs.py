@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 from click.core import ParameterSource
 
-from penink_cli.ground import streams
+from penink_cli.ground import changes, streams
 from penink_cli.ground.errors import FormatError, LimitError, PeninkError, in_quotes
 from penink_cli.ground.shapes import same_shape
 from penink_cli.options.common import MAX_PIXELS, warn
@@ -29,7 +29,7 @@ ALPHA = "alpha"
 NAMED = {"white": (255, 255, 255), "black": (0, 0, 0), "grey": (128, 128, 128)}
 _OPTIONS = ("background", "profile", "strict", "lenient")
 _META = "penink.photo"
-_photos: dict[str | None, ColourImage | GreyImage] | None = None  # that are remembered, by their paths
+_photos: dict[str | None, tuple[changes.State, ColourImage | GreyImage]] | None = None  # remembered, by their paths
 MAX_MEMBER = 1 << 28  # bytes of a file that a manifest names
 
 
@@ -169,12 +169,24 @@ def remembering_photos() -> Iterator[None]:
 
 
 def _remembered(path: str | None, read: Callable[[], ColourImage | GreyImage]) -> ColourImage | GreyImage:
-    if _photos is None:
-        return read()
-    key = None if path == "-" else path
-    if key not in _photos:
-        _photos[key] = read()
-    return _photos[key]
+    known = _known(path)
+    if known is not None:
+        return known
+    state = streams.state(path)
+    found = read()
+    if _photos is not None:
+        _photos[None if path == "-" else path] = state, found
+    return found
+
+
+def _known(path: str | None) -> ColourImage | GreyImage | None:
+    """The photograph of that path if it is remembered, and its file has not changed."""
+    state, found = (_photos or {}).get(None if path == "-" else path, (None, None))
+    if found is None or state != streams.state(path):
+        return None
+    if path is not None and path != "-":
+        changes.note(path, state)
+    return found
 
 
 def read_photo(path: str | None, max_pixels: int) -> GreyImage:
@@ -182,7 +194,7 @@ def read_photo(path: str | None, max_pixels: int) -> GreyImage:
     from penink_cli.formats import photo
     from penink_cli.ground.model import ColourImage
 
-    known = None if _photos is None else _photos.get(None if path == "-" else path)
+    known = _known(path)
     if known is not None:
         return photo.grey_of(known) if isinstance(known, ColourImage) else known
     with streams.reading(path) as stream:

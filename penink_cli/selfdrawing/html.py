@@ -8,6 +8,7 @@ from __future__ import annotations
 import html
 import json
 import re
+import zlib
 from typing import Any
 
 from penink_cli.blasting.screens import Screen
@@ -18,8 +19,8 @@ from penink_cli.selfdrawing.data import LayerData, is_sent, layers, tile_bytes
 SOURCES = ("unpack.js", "constants.js", "reconstruct.js", "drawing.js", "outline.js", "data.js", "raster.js", "page.js")
 
 
-def write(illustration: Illustration, title: str, readable: bool = False) -> bytes:
-    """The page. readable: with the program's comments, not packed."""
+def write(illustration: Illustration, title: str, readable: bool = False, reload: bool = False) -> bytes:
+    """The page. readable: with the program's comments, not packed. reload: it follows its file."""
     parts = layers(illustration)
     data = b"".join(
         part.samples + part.edges + b"".join(tile_bytes(s) for s in part.table.screens if is_sent(s))
@@ -38,6 +39,11 @@ def write(illustration: Illustration, title: str, readable: bool = False) -> byt
             f"document.body.append(script);\n"
             f"{call}bytes.subarray({len(code)}));\n}});"
         )
+    if reload:
+        following = packer.source("reload.js")
+        mark = f"{zlib.crc32(script.encode('utf-8')):08x}"
+        following = following if readable else packer.strip_javascript(following)
+        script = f"{following}\nif (!reloading(\"{mark}\")) {{\n{script}\n}}"
     parts_of_page = {"TITLE": html.escape(title), "PROGRAM": script}  # in one go: either may hold the other's name
     page = re.sub("|".join(parts_of_page), lambda found: parts_of_page[found[0]], packer.source("page.html"))
     return page.encode("utf-8")

@@ -219,3 +219,15 @@ def test_a_title_may_be_what_stands_for_it_in_the_page(title):
 
 def test_titles_are_escaped():
     assert b"<title>A &lt;disc&gt;</title>" in html.write(illustration(), "A <disc>")
+
+
+def test_a_page_follows_its_file(tmp_path):
+    path, newer = tmp_path / "picture.html", tmp_path / "newer.html"
+    path.write_bytes(html.write(illustration(), "before", reload=True))
+    newer.write_bytes(html.write(illustration(inches=1.0), "after", readable=True, reload=True))
+    with Page(path, 300, 300) as page:
+        page.until("(window.looks ||= 0, window.onmessage ??= () => looks++, looks > 2)")  # the same, so far
+        assert page.evaluate("document.title") == "before"
+        newer.rename(path)
+        page.until("document.title === 'after' && document.body.dataset.ready === 'yes'")
+        assert not page.console

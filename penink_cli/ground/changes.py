@@ -1,0 +1,42 @@
+"""What tells whether an input has changed, and which inputs a part of the program has read."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+#: Device, inode, size and time of a file, the bytes of a file on the workbench, or None where there is nothing.
+State = tuple[int, ...] | bytes | None
+
+_noted: list[dict[str, State]] = []
+
+
+@contextmanager
+def noting() -> Iterator[dict[str, State]]:
+    """The inputs that are opened while the block runs, by their names, as they were then."""
+    read: dict[str, State] = {}
+    _noted.append(read)
+    try:
+        yield read
+    finally:
+        _noted.pop()
+
+
+def note(path: str, state: State) -> None:
+    """An input is opened: for all who note."""
+    for read in _noted:
+        read.setdefault(path, state)
+
+
+def of_status(status: os.stat_result) -> State:
+    """The state of a file by its status."""
+    return status.st_dev, status.st_ino, status.st_size, status.st_mtime_ns
+
+
+def of_file(path: str) -> State:
+    """The state of the file of that name, None where there is none."""
+    try:
+        return of_status(os.stat(path))
+    except (OSError, ValueError):
+        return None
