@@ -45,7 +45,11 @@ if TYPE_CHECKING:
 @click.option("--dpi", type=POSITIVE, metavar="N", help="Size on paper by the samples per inch, instead of --width.")
 @click.option("--pen", type=LENGTH, help="Draw all strokes with one pen of this width.  [default: the texture's]")
 @click.option(
-    "--finer", type=Finite(0.1, 1), default=1.0, metavar="F", help="Draw with this part of the pens, lines so much closer."
+    "--finer",
+    type=Finite(0.1, 1),
+    default=1.0,
+    metavar="F",
+    help="Draw with this part of the pens, lines so much closer.",
 )
 @click.option("--gamma", type=Finite(0.05, 20), default=1.0, metavar="G", help="Tone curve: grey is raised to it.")
 @click.option(

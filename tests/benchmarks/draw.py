@@ -1,8 +1,11 @@
 """Where `draw` spends its processor time, filter by filter.
 
-Run as ``python -m tests.benchmarks.draw [stages] [half|two|twelve …]``. A portrait with a camera's grain, as a JPEG of
-half a megapixel, two and twelve, is drawn 6 in wide. Times are of the processor, all threads together; Canny's detector
-of scikit-image (sigma 2) on the same photograph in the same run is the unit beside them.
+Run as ``python -m tests.benchmarks.draw [stages] [watch] [half|two|twelve …]``. A portrait with a camera's grain, as a
+JPEG of half a megapixel, two and twelve, is drawn 6 in wide. Times are of the processor, all threads together; Canny's
+detector of scikit-image (sigma 2) on the same photograph in the same run is the unit beside them.
+
+`watch`: seconds from the saving of a style or of somebody's strokes to the drawing's being there again, while
+``draw --watch`` follows them: on the wall, so on a quiet machine alone; and of the processor.
 """
 
 import json
@@ -99,6 +102,60 @@ def stages(folder, sizes):
                 sys.exit("the threads change the bytes")
 
 
+SAVED = {  # what is saved, after the drawing in crosshatch
+    "texture": (("form", 0.3), 3),
+    "pen": (("form", 0.4), 3),
+    "texture again": (("crosshatch", 0.4), 3),
+    "a stroke": (("crosshatch", 0.4), 60),
+}
+
+
+def watch(folder):
+    """How long it takes from a file's being saved to the drawing."""
+    photo, drawing = folder / "half.jpg", folder / "d.svg"
+    portrait(photo, SIZES["half"])
+
+    def save(texture, pen, x):
+        stages = {"compose": {}, "edges": {"high": 0.15}, "lines": {"pen": 0.9}, "directions": {}}
+        stages["blast"] = {"texture": texture, "pen": pen}
+        texts = {
+            "my.style.json": json.dumps({"format": "penink-style", "version": 1, **stages}),
+            "mine.svg": '<svg xmlns="http://www.w3.org/2000/svg" width="900" height="600">'
+            f'<line x1="{x}" y1="3" x2="400" y2="500"/></svg>',
+        }
+        for name, text in texts.items():
+            if not (folder / name).exists() or (folder / name).read_text() != text:
+                (folder / "new").write_text(text)
+                os.replace(folder / "new", folder / name)
+
+    def spent(process):
+        fields = Path(f"/proc/{process.pid}/stat").read_text().rsplit(")", 1)[1].split()
+        return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+    def drawn_again(process, before):
+        while process.poll() is None and (not drawing.exists() or drawing.stat().st_ino == before):
+            time.sleep(0.005)
+        if process.poll() is not None:
+            sys.exit("it has ended")
+        return time.perf_counter()
+
+    save("crosshatch", 0.3, 3)
+    command = [sys.executable, "-m", "penink_cli", "draw", photo, "--watch", "--quiet", "--width", "6in", "-o", drawing]
+    command += ["--style", folder / "my.style.json", "--directions", folder / "mine.svg"]
+    with subprocess.Popen(command) as process:
+        try:
+            drawn_again(process, 0)
+            for name, ((texture, pen), x) in SAVED.items():
+                before, processor = drawing.stat().st_ino, spent(process)
+                start = time.perf_counter()
+                save(texture, pen, x)
+                wall = drawn_again(process, before) - start
+                processor = spent(process) - processor
+                print(f"  {name}: {wall:.2f} s on the wall, {processor:.2f} s of processor", flush=True)
+        finally:
+            process.terminate()
+
+
 def main():
     os.environ.pop("PYTHONDONTWRITEBYTECODE", None)  # a package that is installed comes compiled
     if sys.argv[1:2] == ["child"]:
@@ -107,7 +164,10 @@ def main():
     told = sys.argv[1:]
     with tempfile.TemporaryDirectory() as name:
         sizes = [size for size in SIZES if size in told] or list(SIZES)
-        stages(Path(name), sizes)
+        if "watch" not in told or "stages" in told:
+            stages(Path(name), sizes)
+        if "watch" in told or not told:
+            watch(Path(name))
 
 
 if __name__ == "__main__":

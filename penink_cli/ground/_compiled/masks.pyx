@@ -60,14 +60,15 @@ def boxes(const int[:, ::1] part, int[:, ::1] box) -> None:
 def distance(const unsigned char[:, ::1] mask, double[:, ::1] out) -> None:
     """From each pixel of a mask (h, w) to the middle of the nearest one outside of it, pixels; 1e300 for none.
 
-    First along columns, then the least over each row: cubic in the side, for windows of a hundred pixels.
+    In a column the nearest one is counted; of each row's pixels those are kept that are nearest to some (Meijster,
+    Roerdink and Hesselink 2000). All in whole numbers, so that the nearest is the nearest.
     """
-    cdef Py_ssize_t h = mask.shape[0], w = mask.shape[1], i, j, k, away
-    cdef Py_ssize_t far = h + w
-    cdef Py_ssize_t least
+    cdef Py_ssize_t h = mask.shape[0], w = mask.shape[1], i, j, away, far = h + w
     cdef Py_ssize_t* down = NULL
+    cdef Py_ssize_t* kept = NULL
     try:
         down = <Py_ssize_t*>room(h * w, sizeof(Py_ssize_t))
+        kept = <Py_ssize_t*>room(2 * w, sizeof(Py_ssize_t))
         with nogil:
             for j in range(w):
                 away = far
@@ -78,15 +79,39 @@ def distance(const unsigned char[:, ::1] mask, double[:, ::1] out) -> None:
                     away = 0 if not mask[i, j] else min(far, away + 1)
                     down[i * w + j] = min(down[i * w + j], away)
             for i in range(h):
+                nearest(down + i * w, w, kept, kept + w)
                 for j in range(w):
-                    least = down[i * w + j] * down[i * w + j]
-                    k = 1
-                    while k < w and k * k < least:
-                        if j >= k:
-                            least = min(least, k * k + down[i * w + j - k] * down[i * w + j - k])
-                        if j + k < w:
-                            least = min(least, k * k + down[i * w + j + k] * down[i * w + j + k])
-                        k += 1
-                    out[i, j] = sqrt(<double>least) if least < far * far else 1e300
+                    away = down[i * w + kept[j]]
+                    away = away * away + (j - kept[j]) * (j - kept[j])
+                    out[i, j] = sqrt(<double>away) if away < far * far else 1e300
     finally:
         free(down)
+        free(kept)
+
+
+cdef void nearest(const Py_ssize_t* down, Py_ssize_t w, Py_ssize_t* which, Py_ssize_t* begin) noexcept nogil:
+    """For each pixel of a row the one under or over which the nearest lies, so far down: `which`, (w,).
+
+    begin: (w,) room for the pixel from which on each of those kept is the nearest.
+    """
+    cdef Py_ssize_t count = 0, j, k, start
+    for j in range(w):
+        start = 0
+        while count:
+            k = which[count - 1]
+            # from `start` on j is nearer than k, rounded up
+            start = j * j + down[j] * down[j] - k * k - down[k] * down[k]
+            start = 0 if start <= 0 else (start + 2 * (j - k) - 1) // (2 * (j - k))
+            if start > begin[count - 1]:
+                break
+            count -= 1
+            start = 0
+        if count == 0 or start < w:
+            which[count], begin[count] = j, start
+            count += 1
+    j = w - 1  # from the right, so that none of those kept is overwritten before it has been used
+    for k in range(count - 1, -1, -1):
+        start = which[k]
+        for j in range(j, begin[k] - 1, -1):
+            which[j] = start
+        j = begin[k] - 1
