@@ -36,6 +36,8 @@ SINGLE = 0.06
 SWEEPS, ROUNDS = 2, 3
 #: Where less than this is bare, what is due is no reason for lines.
 BARE = 0.05
+#: A set of strokes is laid once: laid anew it is no truer and takes as long again.
+SET_SWEEPS = 1
 #: How much of the error the next sweep's density takes up.
 SWEEP_GAIN = 0.4
 #: Along a field no more of an error than this is fed back at a time: lines that must end there cannot make it up.
@@ -103,7 +105,7 @@ def hatch_sheet(
     best: tuple[float, int, list[Strokes]] | None = None
     for turn in range(ROUNDS):
         tick()
-        if turn < SWEEPS:
+        if turn < (SWEEPS if examples is None else SET_SWEEPS):
             laid = []  # those of the round before are no longer needed
             smooth = (sheet.low_pass(density) if turn else wide) / sheet.weight - there
             smooth = np.maximum(smooth, 0) / np.maximum(1 - there, np.float32(BARE))

@@ -34,8 +34,8 @@ SCALES, TURN = (0.8, 1.2), 10.0
 TRIES = 4
 #: Fine strokes are no shorter; with one pen for all they are drawn where it is by so much lighter.
 FINE_SHORTEST_PT, ONE_PEN_SEEN = 9.0, np.float32(0.02)
-#: Squares that ink is reckoned in, samples of an example, samples from knot to knot of a stroke.
-PX, STEP_PT, KNOTS = 0.24, 1.5, 4
+#: Samples of an example, samples from knot to knot of a stroke.
+STEP_PT, KNOTS = 1.5, 4
 
 
 class StrokeSet(Form):
@@ -69,11 +69,10 @@ class StrokeSet(Form):
         room = 1000 + int(4 * total / self._area)
         out, first = np.empty((room * min(self._most, 24) + 256, 2)), np.zeros(room + 1, np.int64)
         which = np.zeros(room, np.int32)
-        ink = np.zeros((int(sheet.height / PX) + 1, int(sheet.width / PX) + 1), np.uint8)
         field = (np.ascontiguousarray(plane) for plane in self.turned(i))
         placed = growth.Growth(
             wanted, wanted.copy(), *field, cell, self._lines_of.points, self._lines_of.first,
-            self._pens + MEAN * sheet.gain_pt, ink, PX, SPREAD, seed + 1,
+            self._pens + MEAN * sheet.gain_pt, np.zeros_like(sheet.bits), SPREAD, SCALES[1], seed + 1,
         ).place(STOP, math.radians(TURN), *SCALES, TRIES, out, first, which)  # fmt: skip
         first = first[: placed + 1]
         points, starts = smooth(out, first)

@@ -5,6 +5,7 @@ Only `stroke_set` imports this module. One thread, one order: each stroke depend
 """
 
 from libc.math cimport fabs, sqrt
+from penink_cli.blasting._compiled.ink cimport bar
 
 import numpy as np
 
@@ -17,6 +18,7 @@ cdef enum:
 cdef double PAPER = 0.01  # a tone below this wants no stroke
 cdef double SOFT = 0.02  # added to the tone that what is lacking is held against
 cdef double OVERLAP = 0.15  # what ink over ink counts against a stroke
+cdef float SHY = <float>0.7, SHY_BESIDE = <float>0.2  # what a place where no stroke fits, and those beside it, lack less
 cdef double STRAIGHT_ON = 0.8  # the field breaks where it turns by more than this cosine within a point
 
 
@@ -26,7 +28,8 @@ cdef class Growth:
     tone, left: (rows, columns) what is wanted and what of it is lacking, float32. cos2, sin2: (rows, columns) of twice
     the angle of the field. cell: width and height of a cell, points. points, first: the examples, polylines along x
     from 0, points; widths: (n,) what a device paints of them. spread: a stroke's ink counts within so many times the
-    square root of its area over the tone. ink: (h, w) zeros, squares of `px` points.
+    square root of its area over the tone. bits: ink that is there, as in `ink`. largest: the most that an example is
+    scaled.
     """
 
     cdef const float[:, ::1] tone
@@ -42,18 +45,23 @@ cdef class Growth:
     cdef const double[:, ::1] points
     cdef const long long[::1] first
     cdef const double[::1] widths
-    cdef unsigned char[:, ::1] ink
-    cdef double px, dx, dy, area, spread
+    cdef unsigned long long[:, :, ::1] bits
+    cdef double sx, sy, dx, dy, area, spread
+    cdef int steps
     cdef unsigned long long state
     cdef double[:, ::1] line
     cdef double[:, ::1] kept
     cdef double[:, :, ::1] way
 
-    def __init__(self, tone, left, cos2, sin2, cell, points, first, widths, ink, px, spread, seed):
+    def __init__(self, tone, left, cos2, sin2, cell, points, first, widths, bits, spread, largest, seed):
         self.tone, self.left, self.cos2, self.sin2 = tone, left, cos2, sin2
         self.dx, self.dy = cell
         self.points, self.first, self.widths = points, first, widths
-        self.ink, self.px, self.spread = ink, px, spread
+        self.bits, self.spread = bits, spread
+        self.sx, self.sy = 8 / self.dx, 8 / self.dy
+        # what the turn may add to it, and one more for what lies between two steps
+        reach = np.abs(np.asarray(points)[:, 0]).max(initial=0.0) * largest * 1.1 + 3
+        self.steps = min(<int>reach, MOST_STEPS)
         self.shy = np.zeros_like(left)
         self.line, self.kept = np.zeros((MOST_POINTS, 2)), np.zeros((MOST_POINTS, 2))
         self.way = np.zeros((2, MOST_STEPS + 1, 4))
@@ -152,57 +160,27 @@ cdef class Growth:
             r, c = br, bc
         row[0], column[0] = r, c
 
-    cdef Py_ssize_t inked(
+    cdef double inked(
         self, double x0, double y0, double x1, double y1, double width, bint draw
     ) noexcept nogil:
-        """How many bare squares a segment of this width inks; it does so where draw is true."""
-        cdef double half = 0.5 * width, dx = x1 - x0, dy = y1 - y0, square = dx * dx + dy * dy, t, qx, qy
-        cdef Py_ssize_t left = <Py_ssize_t>max(0.0, (min(x0, x1) - half) / self.px)
-        cdef Py_ssize_t right = <Py_ssize_t>min(self.ink.shape[1] - 1.0, (max(x0, x1) + half) / self.px)
-        cdef Py_ssize_t above = <Py_ssize_t>max(0.0, (min(y0, y1) - half) / self.px)
-        cdef Py_ssize_t below = <Py_ssize_t>min(self.ink.shape[0] - 1.0, (max(y0, y1) + half) / self.px)
-        cdef Py_ssize_t i, j, count = 0
-        for i in range(above, below + 1):
-            for j in range(left, right + 1):
-                if self.ink[i, j]:
-                    continue
-                qx, qy = (j + 0.5) * self.px - x0, (i + 0.5) * self.px - y0
-                t = min(max((qx * dx + qy * dy) / square, 0.0), 1.0) if square > 0 else 0.0
-                qx -= t * dx
-                qy -= t * dy
-                if qx * qx + qy * qy <= half * half:
-                    count += 1
-                    if draw:
-                        self.ink[i, j] = 1
-        return count
+        """The area that a segment of this width newly inks, square points; it does so where draw is true."""
+        cdef int fresh = bar(
+            &self.bits[0, 0, 0], self.tone.shape[0], self.tone.shape[1], x0 * self.sx, y0 * self.sy, x1 * self.sx,
+            y1 * self.sy, 0.25 * width * (self.sx + self.sy), True, True, draw,
+        )
+        return fresh / (self.sx * self.sy)
 
-    cdef int bend(
-        self, double x, double y, int example, double at, double scale, double turn, double flip
-    ) noexcept nogil:
-        """An example bent along the field, its place `at` (0 start … 1 end) at x, y, into `line`; how many points.
-
-        turn: radians, small. flip: 1 or -1, mirrored.
-        """
-        cdef Py_ssize_t begin = self.first[example], p
-        cdef int n = min(<int>(self.first[example + 1] - begin), MOST_POINTS), side, k, i, count[2]
-        cdef double c = 1 - turn * turn * (0.5 - turn * turn / 24)
-        cdef double s = turn * (1 - turn * turn * (1 / 6.0 - turn * turn / 120))
-        cdef double longest = 0, low = 0, high = 0, u, v, hx, hy, ax, ay, px, py, nx, ny, f, along
-        for i in range(n):
-            longest = max(longest, self.points[begin + i, 0])
-        at *= longest * scale
-        for i in range(n):
-            low = min(low, self.points[begin + i, 0] * scale - at)
-            high = max(high, self.points[begin + i, 0] * scale - at)
+    cdef void ways(self, double x, double y) noexcept nogil:
+        """Follow the field from a place both ways, into `way`: as far as any example may reach."""
+        cdef double hx, hy, ax, ay, px, py, nx, ny, along
+        cdef int side, k
         self.heading(x, y, &hx, &hy)
         if hy < 0:  # downwards, as fur falls
             hx, hy = -hx, -hy
         for side in range(2):
             px, py = x, y
             ax, ay = (-hx, -hy) if side else (hx, hy)
-            # what the turn may add to it, and one more for what lies between two steps
-            count[side] = min(<int>((-low if side else high) * 1.1 + 3), MOST_STEPS)
-            for k in range(count[side] + 1):
+            for k in range(self.steps + 1):
                 self.way[side, k, 0], self.way[side, k, 1] = px, py
                 self.way[side, k, 2], self.way[side, k, 3] = (-ax, -ay) if side else (ax, ay)
                 self.heading(px + 0.5 * ax, py + 0.5 * ay, &nx, &ny)
@@ -213,13 +191,27 @@ cdef class Growth:
                     ax, ay = nx, ny
                 px += ax
                 py += ay
+
+    cdef int bend(self, int example, double at, double scale, double turn, double flip) noexcept nogil:
+        """An example bent along `way`, its place `at` (0 start … 1 end) where that begins, into `line`; how many points.
+
+        turn: radians, small. flip: 1 or -1, mirrored.
+        """
+        cdef Py_ssize_t begin = self.first[example], p
+        cdef int n = min(<int>(self.first[example + 1] - begin), MOST_POINTS), side, k, i
+        cdef double c = 1 - turn * turn * (0.5 - turn * turn / 24)
+        cdef double s = turn * (1 - turn * turn * (1 / 6.0 - turn * turn / 120))
+        cdef double longest = 0, u, v, ax, ay, px, py, f
+        for i in range(n):
+            longest = max(longest, self.points[begin + i, 0])
+        at *= longest * scale
         for i in range(n):
             p = begin + i
             u, v = self.points[p, 0] * scale - at, self.points[p, 1] * scale * flip
             u, v = u * c - v * s, u * s + v * c
             side = u < 0
             f = fabs(u)
-            k = min(<int>f, count[side] - 1)
+            k = min(<int>f, self.steps - 1)
             f -= k
             px = self.way[side, k, 0] + (self.way[side, k + 1, 0] - self.way[side, k, 0]) * f
             py = self.way[side, k, 1] + (self.way[side, k + 1, 1] - self.way[side, k, 1]) * f
@@ -249,7 +241,7 @@ cdef class Growth:
             ):
                 gain -= 0.3 * area
                 continue
-            fresh = self.px * self.px * self.inked(
+            fresh = self.inked(
                 self.line[i, 0], self.line[i, 1], self.line[i + 1, 0], self.line[i + 1, 1], width, False
             )
             if self.tone[r, c] < PAPER:
@@ -303,7 +295,7 @@ cdef class Growth:
         cdef Py_ssize_t r0 = self.tone.shape[0], r1 = -1, c0 = self.tone.shape[1], c1 = -1
         cdef int i
         for i in range(n - 1):
-            ink += self.px * self.px * self.inked(
+            ink += self.inked(
                 self.line[i, 0], self.line[i, 1], self.line[i + 1, 0], self.line[i + 1, 1], width, True
             )
             x, y = self.line[i + 1, 0] - self.line[i, 0], self.line[i + 1, 1] - self.line[i, 1]
@@ -325,7 +317,7 @@ cdef class Growth:
         turn: the most that a stroke is turned from the field, radians. smallest, largest: its scale. tries: examples
         tried for each. out, first, which: filled with the strokes' points and the example of each.
         """
-        cdef Py_ssize_t row = 0, column = 0, used = 0, i
+        cdef Py_ssize_t row = 0, column = 0, used = 0, i, r, c
         cdef int n, example, best_n, best_example, _k, placed = 0, failures = 0, room = which.shape[0]
         cdef double x, y, value, best, scale, aside, at, flip
         with nogil:
@@ -337,6 +329,7 @@ cdef class Growth:
                 x = (column + self.chance()) * self.dx
                 y = (row + self.chance()) * self.dy
                 best, best_n, best_example = -1e30, 0, 0
+                self.ways(x, y)
                 for _k in range(tries):
                     example = <int>(self.chance() * self.widths.shape[0])
                     scale = smallest + (largest - smallest) * self.chance()
@@ -346,7 +339,7 @@ cdef class Growth:
                     aside = (aside - 1.5) * turn / 1.5
                     at = 0.2 + 0.6 * self.chance()
                     flip = -1.0 if self.chance() < 0.5 else 1.0
-                    n = self.bend(x, y, example, at, scale, aside, flip)
+                    n = self.bend(example, at, scale, aside, flip)
                     value = self.worth(n, self.widths[example])
                     if value > best:
                         best, best_n, best_example = value, n, example
@@ -363,8 +356,14 @@ cdef class Growth:
                         placed += 1
                         first[placed] = used
                         continue
-                self.shy[row, column] += <float>0.35
-                self.raise_all(row, row, column, column)
+                # what fits nowhere here will hardly fit beside it
+                for r in range(max(row - 1, 0), min(row + 2, self.rows[0])):
+                    for c in range(max(column - 1, 0), min(column + 2, self.columns[0])):
+                        self.shy[r, c] += SHY if r == row and c == column else SHY_BESIDE
+                self.raise_all(
+                    max(row - 1, 0), min(row + 1, self.rows[0] - 1), max(column - 1, 0),
+                    min(column + 1, self.columns[0] - 1),
+                )
                 failures += 1
                 if failures > 400000:
                     break
