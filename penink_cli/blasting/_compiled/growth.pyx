@@ -18,7 +18,7 @@ cdef enum:
 cdef double PAPER = 0.01  # a tone below this wants no stroke
 cdef double SOFT = 0.02  # added to the tone that what is lacking is held against
 cdef double OVERLAP = 0.15  # what ink over ink counts against a stroke
-cdef float SHY = <float>0.7, SHY_BESIDE = <float>0.2  # what a place where no stroke fits, and those beside it, lack less
+cdef float SHY = <float>0.7, SHY_BESIDE = <float>0.2  # what a place where no stroke fits lacks less; those beside it
 cdef double STRAIGHT_ON = 0.8  # the field breaks where it turns by more than this cosine within a point
 
 
@@ -193,7 +193,7 @@ cdef class Growth:
                 py += ay
 
     cdef int bend(self, int example, double at, double scale, double turn, double flip) noexcept nogil:
-        """An example bent along `way`, its place `at` (0 start … 1 end) where that begins, into `line`; how many points.
+        """An example bent along `way`, its place `at` (0 start … 1 end) where that begins, into `line`; its points.
 
         turn: radians, small. flip: 1 or -1, mirrored.
         """
