@@ -46,6 +46,8 @@ MOST_FED_BACK = np.float32(0.15)
 #: over by the eye, or a place is so much darker than where it begins: small dark things are told better by the lines
 #: that run along them, closing up, than by a patch of crossed ones with a ragged border.
 WIDER, BY_ITSELF = 2, 0.25
+#: And over so much tone.
+FEATHER = 0.1
 #: Fine strokes: their width in parts of the pen's, and in dots of the device at the least; their length in points.
 FINE, FINE_DOTS, FINE_PT = 0.5, 1.5, 44.0
 #: They must pass a place where so many times as much is due as they add themselves, and count their own ink so many
@@ -160,7 +162,8 @@ def layer_shares(
     for _ in range(WIDER if along_form else 0):
         around = sheet.spread(sheet.seen(around))
     wanted = np.clip(smooth, 0.0, 0.995).astype(np.float64)
-    return shares(wanted, around.astype(np.float64), layers, BY_ITSELF if along_form else ALONE)
+    alone, feather = (BY_ITSELF, FEATHER) if along_form else (ALONE, 0.0)
+    return shares(wanted, around.astype(np.float64), layers, alone, feather)
 
 
 def draw_first(sheet: Sheet, strokes: Strokes) -> None:

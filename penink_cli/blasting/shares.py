@@ -21,11 +21,15 @@ CLOSES_UP = 3
 ALONE = 0.1
 
 
-def shares(tone: Floats, around: Floats, layers: tuple[HatchLayer, ...], alone: float = ALONE) -> list[Floats]:
+def shares(
+    tone: Floats, around: Floats, layers: tuple[HatchLayer, ...], alone: float = ALONE, feather: float = 0.0
+) -> list[Floats]:
     """How much each layer is to cover (same shape as tone), so that crossing at random they make the tone.
 
     around: (same shape) the mean tone of the surroundings; a layer is not begun for a spot that has room for a stroke
     or two of it, unless that is darker than where the layer begins by more than `alone`.
+
+    feather: over so much tone the new layer begins, so that its lines start here and there and not along one border.
 
     A last layer whose `high` is 1 is black: where it begins the first layer goes on alone, and covers all there is.
 
@@ -35,7 +39,7 @@ def shares(tone: Floats, around: Floats, layers: tuple[HatchLayer, ...], alone: 
     if len(layers) > 1 and layers[-1].high >= 1.0:
         begin = layers[-1].low
         black = (tone > begin) & ((around > begin) | (tone > begin + BLACKER))
-        first, *others = shares(tone, around, layers[:-1], alone)
+        first, *others = shares(tone, around, layers[:-1], alone, feather)
         part = box_mean(black.astype(np.float64), CLOSES_UP)
         others = [np.where(part < 0.999, cover, 0.0) for cover in others]
         return [first + (BLACK - first) * part, *others, np.zeros_like(tone)]
@@ -51,6 +55,10 @@ def shares(tone: Floats, around: Floats, layers: tuple[HatchLayer, ...], alone: 
             after = here & (tone > onset) & ((around > onset) | (tone > onset + alone))
             t = np.clip((tone - onset) / BACK_AFTER, 0.0, 1.0)
             less = GIVES_WAY * (layer.high - before) * (1.0 - t * t * (3.0 - 2.0 * t))
+            if feather:
+                dark = np.maximum(np.minimum(tone, around) - onset, tone - onset - alone)
+                t = np.clip(dark / feather, 0.0, 1.0)
+                less = less - (1.0 - t * t * (3.0 - 2.0 * t)) * (less - layer.high + tone)
             reached = np.where(after, layer.high - less, tone)
         cover = np.clip(np.where(here, 1.0 - (1.0 - reached) / bare, 0.0), 0.0, 1.0)
         bare = bare * (1.0 - cover)
