@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -29,7 +30,7 @@ from penink_cli.options.inputs import (
     read_lines,
     read_to_blast,
 )
-from penink_cli.options.layers import read_layers
+from penink_cli.options.layers import COLOUR, read_layers
 from penink_cli.options.progress import progress
 from penink_cli.options.sheet import check_sheet
 from penink_cli.options.textures import find_texture, texture_option
@@ -104,6 +105,15 @@ if TYPE_CHECKING:
     metavar="FILE",
     help="Strokes that are on the paper already, such as outlines: counted, not written. May be repeated.",
 )
+@click.option(
+    "--turn",
+    type=Finite(-360, 360),
+    default=0.0,
+    metavar="DEGREES",
+    help="Turn the hatching clockwise, from a field of directions too: that of several inks is to cross.",
+)
+@click.option("--color", "--colour", "colour", type=COLOUR, metavar="COLOUR", help="The ink, as the result is to say.")
+@click.option("--layer", "layer_name", metavar="NAME", help="The layer's name, as the result is to say.")
 @threads_option
 @verbose_option
 @filter_options
@@ -125,6 +135,9 @@ def blast(
     directions_file: str | None,
     lines_file: str | None,
     ink_files: tuple[str, ...],
+    turn: float,
+    colour: tuple[float, float, float] | None,
+    layer_name: str | None,
     threads: int | None,
     quiet: bool,
     verbose: bool,
@@ -144,14 +157,15 @@ def blast(
     from penink_cli.blasting.pens import finer_texture
     from penink_cli.blasting.rules import rule as find_rule
     from penink_cli.formats import strokes as strokes_format
-    from penink_cli.ground.model import Strokes
+    from penink_cli.ground.codes import code_of
+    from penink_cli.ground.model import Strokes, turned
     from penink_cli.illustration.drawing import tone_curve
 
     if (width is None) == (dpi is None):
         raise click.UsageError("give one of --width and --dpi")
     piped_texture = texture_name if texture_name == "-" else None
     only_one_standard_input(file, edges_file, directions_file, lines_file, *ink_files, piped_texture)
-    texture = finer_texture(find_texture(texture_name), finer, device_dpi)
+    texture = turned(finer_texture(find_texture(texture_name), finer, device_dpi), turn)
     edges = read_edges(edges_file, max_pixels)
     image = read_grey(file, max_pixels) if width is None else read_to_blast(file, max_pixels)
     rows, columns = image.values.shape
@@ -180,7 +194,7 @@ def blast(
             device_dpi=device_dpi,
             rule=rule,
             outlines=Strokes.joined(ink) if ink else None,
-            directions=directions,
+            directions=directions and directions.turned(turn),
             lines=lines,
             swell=swell,
             threads=threads or processors(),
@@ -190,7 +204,7 @@ def blast(
         pens = f"{strokes.widths.min():.2f} to {strokes.widths.max():.2f} pt"
         reporter(verbose)(f"{len(strokes)} strokes of {texture.name}, {pens} wide, on {width_pt:g} x {height_pt:g} pt")
     with writing(output, binary=False) as out:
-        strokes_format.write(out, strokes)
+        strokes_format.write(out, replace(strokes, color=colour and code_of(colour), layer=layer_name))
 
 
 def warnings(tone: Floats, texture: Texture, pen: float | None, device_dpi: float | None) -> list[str]:

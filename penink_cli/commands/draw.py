@@ -15,6 +15,7 @@ from click.core import ParameterSource
 from penink_cli.commands.chain import Chain, Kept, bench, check, found, worded, words
 from penink_cli.commands.compose import composition_options
 from penink_cli.ground import streams
+from penink_cli.ground.codes import code_of
 from penink_cli.ground.errors import PeninkError, StreamError, in_quotes
 from penink_cli.ground.units import parse_length
 from penink_cli.options.common import (
@@ -27,12 +28,13 @@ from penink_cli.options.common import (
     verbose_option,
     warn,
 )
+from penink_cli.options.inks import CMYK, Inks, inks_option
 from penink_cli.options.inputs import only_one_standard_input, photo_options, photo_words, read_colours
 from penink_cli.options.layers import colour_option, page_options
 from penink_cli.options.sheet import check_sheet
 from penink_cli.options.styles import STYLE, find_style
 from penink_cli.options.textures import TEXTURE, find_texture
-from penink_cli.outputs.registry import endings, of_illustrations, on_screen, writer
+from penink_cli.outputs.registry import STROKES, endings, of_illustrations, on_screen, writer
 
 if TYPE_CHECKING:
     from penink_cli.formats.style import Style, Value
@@ -119,6 +121,8 @@ _TOLD = {
     metavar="FILE",
     help="Hatch along this: a field of directions, or your own strokes over the photo, a strokes file or SVG.",
 )
+@inks_option
+@click.option("--black", type=Finite(0, 1), metavar="SHARE", help="With --inks, as separate has it.  [default: 0.8]")
 @composition_options
 @page_options
 @colour_option
@@ -135,6 +139,8 @@ def draw(
     out_dir: str | None,
     wanted: str | None,
     watching: bool,
+    inks: Inks | None,
+    black: float | None,
     **_: Any,
 ) -> None:
     """Turn a photo into a pen-and-ink drawing, the whole chain in one call.
@@ -146,6 +152,8 @@ def draw(
     With --out-dir any number of photos are drawn in one go; what cannot be read is named at the end, and the rest is
     done. With --watch the drawing follows its photo, and the style, texture, mask or strokes given as files, until it
     is interrupted; only what has changed is made anew, and a page reloads itself in the browser.
+
+    With --inks it is drawn in colours, a plate an ink, whose tones are the photo's; lines are the darkest ink's.
 
     \b
     penink draw photo.jpg -o photo.pdf
@@ -167,6 +175,11 @@ def draw(
     file = files[0] if files else None
     only_one_standard_input(file, *read, *dashes)
     page = _page_words(ending, given)
+    if black is not None and inks is None:
+        raise click.UsageError("--black goes with --inks")
+    if inks is not None and (ending == STROKES or "colours" in given):
+        why = f"{ending} has one colour" if ending == STROKES else "--color says what --inks says"
+        raise click.UsageError(f"--inks: {why}")
     style = find_style(style_name)
     check(style, style_name)
     call = _Call(context.params, given, ending, page, style)
@@ -269,7 +282,9 @@ def _draw(
     options, given, ending = call.options, call.given, call.ending
     stages = _told(call.style, given)
     width, max_pixels = options["width"], options["max_pixels"]
-    with progress(9, "draw", quiet or options["quiet"]) as advance:
+    inks: Inks | None = options["inks"]
+    steps = 9 if inks is None else 6 + 4 * len(inks.names)
+    with progress(steps, "draw", quiet or options["quiet"]) as advance:
         shape = read_colours(file, max_pixels).values.shape
         rows, columns = shape[:2]
         if options["height"] is not None:
@@ -281,7 +296,9 @@ def _draw(
         say = reporter(options["verbose"])
         chain = Chain(files, taken, options["threads"], limit, say, lambda: advance(1), kept)
         device_dpi = given.get("device_dpi", None if on_screen(ending) else PRINTER_DPI)
-        _Drawing(chain, stages, given, width, rows / columns, ending, device_dpi).draw(file, shape, output, call.page)
+        _Drawing(chain, stages, given, width, rows / columns, ending, device_dpi, inks).draw(
+            file, shape, output, call.page
+        )
     if kept is not None:
         kept.forget_others()
 
@@ -335,13 +352,45 @@ def _told(style: Style, given: dict[str, Any]) -> dict[str, dict[str, Value]]:
     return stages
 
 
+@dataclass(frozen=True)
+class Plate:
+    """Grey that one ink draws: of the drawing's only one, or of several.
+
+    number: among the inks, from 1; 0 where there is one ink. turn: degrees that its hatching is turned.
+    """
+
+    grey: str
+    number: int = 0
+    name: str = ""
+    colour: str = ""
+    turn: float = 0.0
+    seed: int = 0
+
+    def named(self, wanted: str) -> str:
+        """A name for what is made of this plate."""
+        return f"{self.number}-{wanted}" if self.number else wanted
+
+    def words(self) -> list[str]:
+        """What `blast` is told of it."""
+        if not self.number:
+            return []
+        return ["--turn", repr(self.turn), "--seed", str(self.seed), "--color", self.colour, "--layer", self.name]
+
+    def members(self) -> dict[str, Any]:
+        """The same, as a manifest has it."""
+        if not self.number:
+            return {}
+        return {"name": self.name, "color": self.colour, "turn": self.turn, "seed": self.seed}
+
+
 class _Drawing:
     """One call of `draw`: the filters it runs, in their order."""
 
     def __init__(
         self, chain: Chain, stages: dict[str, dict[str, Value]], given: dict[str, Any], width: float, aspect: float,
-        ending: str, device_dpi: float | None,
+        ending: str, device_dpi: float | None, inks: Inks | None,
     ):  # fmt: skip
+        self.inks = inks
         self.chain, self.stages, self.given, self.ending = chain, stages, given, ending
         self.aspect = aspect
         self.width = width
@@ -390,27 +439,52 @@ class _Drawing:
             told = [*self.words("lines", "detect-lines"), *self.seen_at()]
             lines = self.run("detect-lines", [*told, *photo], "lines.json")
         directions = self.directions(photo, edges, lines)
+        plates = [Plate(grey)] if self.inks is None else self.plates(photo)
         if of_illustrations(self.ending):
-            samples = self.run("extract-samples", ["-e", edges, grey], "samples.pgm")
-            self.illustrated(grey, size, edges, lines, directions, samples, output, page)
+            self.illustrated(plates, size, edges, lines, directions, output, page)
             return
         over = self.over(size, edges, lines)
-        grey = self.enlarged(grey, size, edges)
-        ink = [word for name in over for word in ("--ink", name)]
         along = ["--directions", directions] if directions else []
         white = ["--lines", lines] if lines else []
-        hatching = self.run(
-            "blast",
-            ["-e", edges, *self.on_paper, *self.device, *self.words("blast", "blast"), *along, *white, *ink, grey],
-            "hatching.jsonl",
-        )
-        if not any(self.chain.lines(name) > 1 for name in (hatching, *over)):
+        hatchings = []
+        for plate in plates:
+            grey = self.enlarged(plate, size if self.inks is None else (shape[1], shape[0]), edges)
+            ink = [word for name in over for word in ("--ink", name)] if plate is plates[-1] else []
+            told = [*self.on_paper, *self.device, *self.words("blast", "blast"), *plate.words(), *along, *white, *ink]
+            hatchings.append(self.run("blast", ["-e", edges, *told, grey], plate.named("hatching.jsonl")))
+        if not any(self.chain.lines(name) > 1 for name in (*hatchings, *over)):
             warn("a drawing without a stroke: the photo is paper white, or was made so")
         by = writer(self.ending)
         if by is None:
-            self.chain.joined([hatching, *over], output)
-        else:
-            self.chain.run(by, [*page, hatching, *over], output)
+            self.chain.joined([*hatchings, *over], output)
+            return
+        if self.inks is not None:
+            own = [plate.colour for plate in plates] + [plates[-1].colour] * len(over)
+            knows_colours = any(parameter.name == "colours" for parameter in found(by).params)
+            page = page + [word for colour in own * knows_colours for word in ("--color", colour)]
+        self.chain.run(by, [*page, *hatchings, *over], output)
+
+    def plates(self, photo: list[str]) -> list[Plate]:
+        """The plate of each ink, the lightest first."""
+        from penink_cli.composition.separation import lightest_first, turns
+
+        assert self.inks is not None
+        n = len(self.inks.names)
+        order = lightest_first(self.inks.colours)
+        texture = find_texture(str(self.stages["blast"].get("texture", "crosshatch")))
+        first = texture.layers[0].angle if texture.layers else 0.0
+        apart = [layer.angle - first if layer.turn is None else layer.turn for layer in texture.layers]
+        turned = turns(apart, n)[::-1]  # the darkest lies as the texture has it
+        seed = int(self.stages["blast"].get("seed", 0))
+        told = ["--inks", "cmyk" if self.inks is CMYK else ",".join(self.inks.names)]
+        told += ["--black", repr(self.given["black"])] if "black" in self.given else []
+        result = []
+        for place, number in enumerate(order):
+            name = self.inks.names[number]
+            grey = self.run("separate", [*told, "--plate", str(number + 1), *photo], f"plate-{number + 1}.pgm")
+            colour = code_of(self.inks.colours[number])
+            result.append(Plate(grey, number + 1, name, colour, turned[place], seed + n - 1 - place))
+        return result
 
     def seen_at(self) -> list[str]:
         """What is told to filters that leave out what the drawing of an archive would not show."""
@@ -438,15 +512,16 @@ class _Drawing:
         grey = self.run("compose", [*self.on_paper, *told, *photo], "grey.pgm")
         return grey, working_size(shape, self.width, dpi / 72)
 
-    def enlarged(self, grey: str, size: tuple[int, int], edges: str) -> str:
+    def enlarged(self, plate: Plate, size: tuple[int, int], edges: str) -> str:
         """The grey that is blasted: reconstructed where the photo has fewer pixels than the drawing can show."""
         from penink_cli.illustration.drawing import grey_size
 
         across, down = grey_size(self.width, self.aspect)
         if size[0] >= across:
-            return grey
-        samples = self.run("extract-samples", ["-e", edges, grey], "samples.pgm")
-        return self.run("enlarge", ["-e", edges, "--size", f"{across}x{down}", "--soften", samples], "enlarged.pgm")
+            return plate.grey
+        samples = self.run("extract-samples", ["-e", edges, plate.grey], plate.named("samples.pgm"))
+        enlarge = ["-e", edges, "--size", f"{across}x{down}", "--soften", samples]
+        return self.run("enlarge", enlarge, plate.named("enlarged.pgm"))
 
     def directions(self, photo: list[str], edges: str, lines: str | None) -> str | None:
         """The field that is hatched along, if any."""
@@ -482,44 +557,48 @@ class _Drawing:
         return result
 
     def illustrated(
-        self, grey: str, size: tuple[int, int], edges: str, lines: str | None, directions: str | None, samples: str,
+        self, plates: list[Plate], size: tuple[int, int], edges: str, lines: str | None, directions: str | None,
         output: str | None, page: list[str],
     ) -> None:  # fmt: skip
         """The illustration itself, or a page that draws it."""
-        reduced = self.chain.name("reduced.pgm")
-        reduce = ["-e", edges, "--photo", grey]
         shrink = max(2.0, max(size) / DEVICE_SIDE)
         smaller = f"{max(1, math.floor(size[0] / shrink))}x{max(1, math.floor(size[1] / shrink))}"
-        # a page draws itself, and no grid comes near to a photo of noise or fine texture: half of it is enough to hatch
-        auto = [*reduce, "--auto", "--seen-at", repr(self.width), samples]
-        if self.ending == ".html" or not self.chain.run("reduce", auto, reduced, may_fail=True):
-            self.chain.run("reduce", [*reduce, "--size", smaller, samples], reduced)
         blast = self.stages["blast"]
-        layer: dict[str, Any] = {"samples": reduced, "edges": edges, "texture": blast.get("texture", "crosshatch")}
-        if directions:
-            layer["directions"] = directions
+        layers = []
+        for plate in plates:
+            samples = self.run("extract-samples", ["-e", edges, plate.grey], plate.named("samples.pgm"))
+            reduced = self.chain.name(plate.named("reduced.pgm"))
+            reduce = ["-e", edges, "--photo", plate.grey]
+            # a page draws itself, and no grid comes near to a photo of noise or fine texture: half of it is enough
+            auto = [*reduce, "--auto", "--seen-at", repr(self.width), samples]
+            if self.ending == ".html" or not self.chain.run("reduce", auto, reduced, may_fail=True):
+                self.chain.run("reduce", [*reduce, "--size", smaller, samples], reduced)
+            layer: dict[str, Any] = {"samples": reduced, "edges": edges, "texture": blast.get("texture", "crosshatch")}
+            if directions:
+                layer["directions"] = directions
+            for name in ("pen", "gamma", "seed", "rule", "swell"):
+                if name in blast:
+                    layer[name] = _number(name, blast[name])
+            layers.append(layer | plate.members())
         if lines:
             told = self.stages["lines"]
-            layer["lines"] = lines
-            layer["line"] = {
+            layers[-1]["lines"] = lines
+            layers[-1]["line"] = {
                 name.replace("-", "_"): _number(name, told[name])
                 for name in ("pen", "even", "density", "per-inch2", "min-rank")
                 if name in told
             }
-        for name in ("pen", "gamma", "seed", "rule", "swell"):
-            if name in blast:
-                layer[name] = _number(name, blast[name])
         if "outline" in self.stages:
             told = self.stages["outline"]
             pen = told.get("pen", told.get("weight", 0.7))
-            layer["outline"] = {
+            layers[-1]["outline"] = {
                 "pen": _number("pen", pen),
                 "even": "pen" in told,
                 "min_strength": float(told.get("min-strength", 0)),
                 "min_length": float(told.get("min-length", _least_length(size))),
             }
         manifest = {"format": "penink-illustration", "version": 1, "width": self.width}
-        manifest |= {"height": self.width * self.aspect, "layers": [layer]}
+        manifest |= {"height": self.width * self.aspect, "layers": layers}
         name = self.chain.name("drawing.illustration.json")
         self.chain.put(name, json.dumps(manifest) + "\n")
         by = writer(self.ending)

@@ -46,7 +46,8 @@ if TYPE_CHECKING:
     "--layer",
     "chosen",
     metavar="NAME|N",
-    help="Write that layer only, by its name or its place from 1; the others are drawn, and their ink counted.",
+    help="Write that layer only, by its name or its place from 1; the others of its colour are drawn, "
+    "and their ink counted.",
 )
 @threads_option
 def render(
@@ -64,7 +65,8 @@ def render(
 ) -> None:
     """Draw an illustration anew for one size and one device.
 
-    FILE is an illustration, packed (*.penink) or loose. Every layer is enlarged, outlined and blasted.
+    FILE is an illustration, packed (*.penink) or loose. Every layer is enlarged, outlined and blasted. A strokes file
+    has one colour: of an illustration in several, render each --layer.
 
     \b
     penink render keys.penink --width 24in --device-dpi 1200 | penink to-ps -o poster.eps
@@ -81,12 +83,15 @@ def render(
     height_pt = width_pt * illustration.height / illustration.width
     check_sheet(width_pt, height_pt, max_pixels)
     which = range(len(illustration.layers)) if chosen is None else [_number(illustration, chosen)]
-    with progress(steps(illustration), "render", quiet) as advance:
+    inks = {(illustration.layers[i].color or "#000000").lower() for i in which}
+    if len(inks) > 1:
+        raise ParameterError(f"layers of {len(inks)} colours, and a strokes file has one; draw each with --layer")
+    with progress(steps(illustration, which), "render", quiet) as advance:
         layers = layer_strokes(
-            illustration, width_pt, device_dpi=device_dpi, seed=seed, threads=threads or processors(),
-            pen_pt=pen, advance=advance,
+            illustration, width_pt, device_dpi=device_dpi, seed=seed, threads=threads or processors(), pen_pt=pen,
+            chosen=which, advance=advance,
         )  # fmt: skip
-    drawn = Strokes.joined([part for i in which for part in layers[i]])
+    drawn = Strokes.joined([part for layer in layers for part in layer])
     name = illustration.layers[which[0]].name if len(which) == 1 else None
     texture = illustration.layers[which[0]].texture.name if len(which) == 1 else None
     with writing(output, binary=False) as out:

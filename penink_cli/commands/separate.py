@@ -10,6 +10,7 @@ from penink_cli.commands.outline import Point
 from penink_cli.ground.errors import in_quotes
 from penink_cli.ground.streams import writing
 from penink_cli.options.common import edges_option, filter_options, plain_number
+from penink_cli.options.inks import CMYK, Inks, inks_options, inverted, refuse_without_plate, separated
 from penink_cli.options.inputs import (
     only_one_standard_input,
     photo_options,
@@ -52,6 +53,12 @@ class Range(click.ParamType):
     help="The region of the edge list that holds this point, in pixels of the photo; may be repeated.",
 )
 @edges_option(required=False)
+@click.option(
+    "--plate",
+    metavar="NAME|N|COLOUR",
+    help="The plate of one ink: cyan, magenta, yellow, black; with --inks its colour or its place there, from 1.",
+)
+@inks_options
 @click.option("--invert", is_flag=True, help="All but that; the tones of the two overlays add up to the photo's.")
 def separate(
     file: str | None,
@@ -61,6 +68,10 @@ def separate(
     grey: tuple[float, float] | None,
     points: tuple[tuple[float, float], ...],
     edges_file: str | None,
+    plate: str | None,
+    inks: Inks | None,
+    paper_colour: tuple[float, float, float],
+    black: float,
     invert: bool,
     **_: Any,
 ) -> None:
@@ -69,18 +80,31 @@ def separate(
     What the layer is, is told by a mask, by a range of grey or by regions of an edge list. Overlays go
     through the same filters as photos.
 
+    A plate is the layer of one ink: how much of it, printed over the others, comes nearest to the photo's colours. All
+    plates go with the edges of the photo; blast them with --color, and each with another --turn.
+
     \b
+    penink separate keys.png --plate cyan -o cyan.pgm
+    penink separate keys.png --inks '#1b4f9c,#d2232a,#f2c300' --plate 1 -o blue.pgm
     penink separate keys.png --mask keys-mask.png -o keys.pgm
     penink separate keys.png --mask keys-mask.png --invert -o shadow.pgm
     """
     from penink_cli.formats import pgm
     from penink_cli.illustration import overlays
 
-    if (mask is not None) + (grey is not None) + bool(points) != 1:
-        raise click.UsageError("give one of --mask, --grey and --point")
+    if (mask is not None) + (grey is not None) + bool(points) + (plate is not None) != 1:
+        raise click.UsageError("give one of --mask, --grey, --point and --plate")
+    if plate is None:
+        refuse_without_plate()
     if bool(points) != (edges_file is not None):
         raise click.UsageError("--point and --edges go together")
     only_one_standard_input(file, mask, edges_file)
+    if plate is not None:
+        number = (inks or CMYK).number(plate)
+        overlay = separated(file, max_pixels, inks or CMYK, paper_colour, black)[number]
+        with writing(output) as out:
+            pgm.write(out, inverted(overlay) if invert else overlay)
+        return
     photo = read_photo(file, max_pixels)
     if mask is not None:
         share = overlays.by_mask(photo, read_photo(mask, max_pixels))

@@ -9,7 +9,15 @@ import click
 from penink_cli.ground.errors import ParameterError
 from penink_cli.ground.streams import writing
 from penink_cli.options.common import Finite, output_options, processors, threads_option
-from penink_cli.options.layers import as_printed, files_argument, gain_option, page_options, read_layers
+from penink_cli.options.layers import (
+    as_printed,
+    colour_option,
+    colours_of,
+    files_argument,
+    gain_option,
+    page_options,
+    read_layers,
+)
 from penink_cli.options.progress import progress
 
 
@@ -26,8 +34,12 @@ def _pixels(
     max_pixels: int,
     quiet: bool,
     png: bool,
+    colours: tuple[tuple[float, float, float], ...] = (),
 ) -> None:
+    from functools import partial
+
     from penink_cli.formats.pgm import check_size
+    from penink_cli.outputs import inks
     from penink_cli.outputs.page import lay_out
     from penink_cli.outputs.raster import cover
 
@@ -40,17 +52,27 @@ def _pixels(
     if png and max(width, height) >= 2**31:
         raise ParameterError(f"{width} x {height} pixels; a PNG file has less than 2147483648 a side")
     maxval = 2**bits - 1
+    paints = colours_of(layers, colours)
+    coloured = png and any(paint != inks.BLACK for paint in paints)
+    if coloured:
+        bits = 8
     with writing(output) as out, progress(height, "drawing", quiet) as done:
 
         def bands() -> Any:
-            for band in cover.bands(layers, page, dpi, maxval, threads or processors()):
+            whole = partial(cover.bands, page=page, dpi=dpi, maxval=maxval, threads=threads or processors())
+            if coloured:
+                each = [whole([s for s, own in zip(layers, paints) if own == paint]) for paint in dict.fromkeys(paints)]
+                drawn = inks.pixels(each, list(dict.fromkeys(paints)), maxval)
+            else:
+                drawn = whole(layers)
+            for band in drawn:
                 yield band
                 done(len(band))
 
         if png:
             from penink_cli.outputs.raster import png as png_file
 
-            png_file.write(out, (width, height), dpi, bits, bands())
+            png_file.write(out, (width, height), dpi, bits, bands(), coloured)
         else:
             out.write(b"P5\n%d %d\n%d\n" % (width, height, maxval))
             for band in bands():
@@ -95,11 +117,12 @@ def to_pgm(output: str | None, **options: Any) -> None:
 
 
 @click.command(name="to-png")
+@colour_option
 @_options
 def to_png(output: str | None, **options: Any) -> None:
     """Draw strokes into a PNG image, by the area that ink covers.
 
-    The same picture as to-pgm's. Several FILEs are drawn over one another.
+    The same picture as to-pgm's. Several FILEs are drawn over one another; coloured ones are transparent inks.
 
     \b
     penink to-png --dpi 300 photo.strokes.jsonl -o photo.png

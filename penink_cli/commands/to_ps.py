@@ -11,7 +11,7 @@ from penink_cli.ground.streams import writing
 from penink_cli.options.common import Finite, output_options
 from penink_cli.options.layers import colour_option, colours_of, files_argument, page_options, read_layers
 
-OF_STROKES = ("paper", "margin", "landscape", "colours", "device_dpi", "compress")
+OF_STROKES = ("paper", "margin", "landscape", "colours", "device_dpi", "compress", "separations")
 OF_SELF = ("level", "readable")
 
 
@@ -25,6 +25,7 @@ OF_SELF = ("level", "readable")
     metavar="N",
     help="Narrow the strokes by what a printer of N dots an inch adds; for strokes blasted with --device-dpi none.",
 )
+@click.option("--separations", is_flag=True, help="For a press: a plate a page, each layer by itself and in black.")
 @click.option("--compress", is_flag=True, help="Deflate the strokes: half the size, for PostScript Level 3.")
 @click.option(
     "--self", "self_drawing", is_flag=True, help="FILE is an illustration: write an EPS that draws itself at any size."
@@ -40,6 +41,7 @@ def to_ps(
     colours: tuple[tuple[float, float, float], ...],
     device_dpi: float | None,
     compress: bool,
+    separations: bool,
     self_drawing: bool,
     level: str,
     readable: bool,
@@ -51,7 +53,7 @@ def to_ps(
 
     The result is an EPS file, to be included in documents or converted; with --paper it is a page
     to be printed. Several FILEs are layers, the first at the bottom. Strokes are written in the
-    order that makes the file small.
+    order that makes the file small, and coloured ones cover what lies below; to-pdf has transparent inks.
 
     With --self the printer does the work: the small representation itself is written, and a program that draws it with
     fresh strokes for the size at which it is placed and the device's resolution. They are those of blast's rule
@@ -66,6 +68,7 @@ def to_ps(
     if self_drawing:
         write_self_drawing(files, output, "readable" if readable else "flate" if level == "3" else "lzw", max_pixels)
         return
+    from dataclasses import replace
     from functools import partial
 
     from penink_cli.outputs import postscript
@@ -78,8 +81,10 @@ def to_ps(
 
         layers = [narrowed(layer, device_dpi) for layer in layers]
     page, inks = lay_out(layers, paper, margin, landscape), colours_of(layers, colours)
+    if separations and page.paper is None:
+        page = replace(page, paper="plate")
     with writing(output, binary=False) as out:
-        postscript.write(out, layers, page, inks, compress, order=partial(ordered, improve=False))
+        postscript.write(out, layers, page, inks, compress, partial(ordered, improve=False), separations)
 
 
 def _refuse_what_is_ignored(self_drawing: bool) -> None:

@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from penink_cli.composition.filters import Picture, looked_up, shrunk
+from penink_cli.ground.colour import lab_of_light
 
 Weights = tuple[float, float, float]
 
@@ -94,20 +95,7 @@ def lab(colours: Picture) -> npt.NDArray[np.float64]:
     steps = [k / 1024 for k in range(1025)]
     linear = np.array([round(v / 12.92 if v <= 0.04045 else ((v + 0.055) / 1.055) ** 2.4, 12) for v in steps])
     r, g, b = (looked_up(colours[..., k], linear).astype(np.float64) for k in range(3))
-    x = _root((0.412453 * r + 0.357580 * g + 0.180423 * b) / 0.950456)
-    y = _root(0.212671 * r + 0.715160 * g + 0.072169 * b)
-    z = _root((0.019334 * r + 0.119193 * g + 0.950227 * b) / 1.088754)
-    return np.stack([116 * y - 16, 500 * (x - y), 200 * (y - z)], axis=-1)
-
-
-def _root(t: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
-    """CIE's cube root, with its straight piece near 0."""
-    least = 216 / 24389
-    v = np.maximum(t, least)
-    root = 0.25 + 0.75 * v
-    for _ in range(6):
-        root = root - (root * root * root - v) / (3 * root * root)
-    return np.where(t > least, root, (24389 / 27 * t + 16) / 116)
+    return lab_of_light(np.stack([r, g, b], axis=-1))
 
 
 def _pair(shape: tuple[int, ...], down: int, across: int) -> tuple[tuple[slice, slice], tuple[slice, slice]]:

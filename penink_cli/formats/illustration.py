@@ -32,6 +32,7 @@ from penink_cli.ground.model import (
     Lines,
     OutlineChoice,
     Texture,
+    turned,
 )
 from penink_cli.ground.rules import RULES
 
@@ -102,6 +103,7 @@ def _layer(item: dict[str, Any], place: str, fetch: Fetch, shipped: Shipped, max
         own = False
     else:
         texture, own = member("texture", _texture), True
+    turn = number("turn", 0.0, -360.0, 360.0)
     rule = strict_json.text(item.get("rule", "best"), f"{place}: rule")
     if rule not in RULES:
         raise FormatError(f"{place}: rule {strict_json.quoted(rule)}; known are {', '.join(RULES)}")
@@ -111,7 +113,7 @@ def _layer(item: dict[str, Any], place: str, fetch: Fetch, shipped: Shipped, max
     return Layer(
         samples=samples,
         edges=edges,
-        texture=texture,
+        texture=turned(texture, turn),
         texture_name=None if own else texture_name,
         name=strict_json.text(item["name"], f"{place}: name") if "name" in item else None,
         levels=strict_json.whole(
@@ -126,6 +128,8 @@ def _layer(item: dict[str, Any], place: str, fetch: Fetch, shipped: Shipped, max
         directions=field,
         lines=member("lines", _lines) if "lines" in item else None,
         line=_line(item["line"], f"{place}: line") if "line" in item else LineChoice(),
+        color=strict_json.colour(item["color"], f"{place}: color") if "color" in item else None,
+        turn=turn,
     )
 
 
@@ -210,28 +214,32 @@ def _texture(data: bytes) -> Texture:
 
 
 def members(illustration: Illustration) -> dict[str, bytes]:
-    """Manifest and compact members by name, as an archive holds them; defaults are not written."""
+    """Manifest and compact members by name, as an archive holds them; defaults are not written.
+
+    What layers share, as plates of one picture share its edges, is one member.
+    """
     files: dict[str, bytes] = {MANIFEST: b""}
+    named: dict[bytes, str] = {}
+
+    def put(item: dict[str, Any], kind: str, i: int, content: bytes) -> None:
+        item[kind] = named.setdefault(content, f"{i}.{kind}")
+        files[item[kind]] = content
+
     layers = []
     for i, layer in enumerate(illustration.layers):
         rows, columns = layer.samples.values.shape
         item: dict[str, Any] = {} if layer.name is None else {"name": layer.name}
-        item["samples"] = f"{i}.samples"
-        files[item["samples"]] = compact.samples_bytes(layer.samples, layer.edges)
+        put(item, "samples", i, compact.samples_bytes(layer.samples, layer.edges))
         if layer.edges is not None:
-            item["edges"] = f"{i}.edges"
-            files[item["edges"]] = _edges_bytes(layer.edges, columns, rows)
+            put(item, "edges", i, _edges_bytes(layer.edges, columns, rows))
         if layer.directions is not None:
-            item["directions"] = f"{i}.directions"
-            files[item["directions"]] = compact.directions_bytes(layer.directions)
+            put(item, "directions", i, compact.directions_bytes(layer.directions))
         if layer.lines is not None:
-            item["lines"] = f"{i}.lines"
-            files[item["lines"]] = compact_lines.lines_bytes(layer.lines)
+            put(item, "lines", i, compact_lines.lines_bytes(layer.lines))
             if chosen := _line_item(layer.line):
                 item["line"] = chosen
         if layer.texture_name is None:
-            item["texture"] = f"{i}.texture"
-            files[item["texture"]] = compact.text_bytes(_texture_bytes(layer.texture))
+            put(item, "texture", i, compact.text_bytes(_texture_bytes(turned(layer.texture, -layer.turn))))
         elif layer.texture_name != "crosshatch":
             item["texture"] = layer.texture_name
         for name, value, default in (
@@ -241,6 +249,8 @@ def members(illustration: Illustration) -> dict[str, bytes]:
             ("swell", layer.swell, 0.0),
             ("rule", layer.rule, "best"),
             ("seed", layer.seed, 0),
+            ("color", layer.color, None),
+            ("turn", layer.turn, 0.0),
         ):
             if value != default:
                 item[name] = _plain(value)
@@ -306,7 +316,7 @@ def rounded(illustration: Illustration) -> Illustration:
         if edges is not None:
             edges = compact_edges.edges_from(_edges_bytes(edges, columns, rows))
         if layer.texture_name is None:
-            texture = _texture(_texture_bytes(texture))
+            texture = turned(_texture(_texture_bytes(turned(texture, -layer.turn))), layer.turn)
         if field is not None:
             field = compact.directions_from(compact.directions_bytes(field))
         lines, line = layer.lines, LineChoice()

@@ -175,6 +175,13 @@ def text(value: Any, what: str) -> str:
     return value
 
 
+def colour(value: Any, what: str) -> str:
+    """The value, which is ``#rrggbb``."""
+    if not (isinstance(value, str) and re.fullmatch("#[0-9a-fA-F]{6}", value, re.ASCII)):
+        raise FormatError(f"{what} {quoted(value)} is not #rrggbb")
+    return value
+
+
 def array(value: Any, what: str) -> list[Any]:
     """An array."""
     if type(value) is not list:

@@ -19,7 +19,6 @@ from __future__ import annotations
 
 import json
 import math
-import re
 from collections.abc import Iterator
 from typing import Any, BinaryIO, Protocol
 
@@ -150,8 +149,8 @@ def _header(line: bytes) -> dict[str, Any]:
     if type(seed := value.get("seed", 0)) is not int or abs(seed) >= 1 << 63:
         raise FormatError(f"line 1: seed {strict_json.quoted(seed)} is not a whole number of 64 bits")
     color = header["color"] = value.get("color")
-    if "color" in value and not (isinstance(color, str) and re.fullmatch("#[0-9a-fA-F]{6}", color, re.ASCII)):
-        raise FormatError(f"line 1: color {strict_json.quoted(color)} is not #rrggbb")
+    if "color" in value:
+        strict_json.colour(color, "line 1: color")
     dpi = header["device_dpi"] = value.get("device_dpi")
     if dpi is not None and not (_is_number(dpi) and dpi > 0):
         raise FormatError(

@@ -17,6 +17,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from penink_cli.ground.angles import direction
+
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 
@@ -139,6 +141,13 @@ class Directions:
     cos2: npt.NDArray[np.floating]
     sin2: npt.NDArray[np.floating]
     confidence: npt.NDArray[np.floating]
+
+    def turned(self, degrees: float) -> Directions:
+        """The field with every direction turned clockwise."""
+        if not degrees:
+            return self
+        c, s = direction(2.0 * degrees)
+        return replace(self, cos2=self.cos2 * c - self.sin2 * s, sin2=self.cos2 * s + self.sin2 * c)
 
 
 @dataclass(frozen=True, eq=False)
@@ -388,6 +397,20 @@ class Texture:
     oriented: bool = False
 
 
+def turned(texture: Texture, degrees: float) -> Texture:
+    """The texture with its hatching turned clockwise; a tile without hatching layers is as it was."""
+    if not degrees:
+        return texture
+
+    def around(angle: float) -> float:
+        angle += degrees
+        return angle - 360.0 if angle > 180.0 else angle + 360.0 if angle < -180.0 else angle
+
+    layers = tuple(replace(layer, angle=around(layer.angle)) for layer in texture.layers)
+    engraving = texture.engraving and replace(texture.engraving, angle=around(texture.engraving.angle))
+    return replace(texture, layers=layers, engraving=engraving)
+
+
 @dataclass(frozen=True)
 class OutlineChoice:
     """Which edges of a layer become outline strokes, and how they are drawn.
@@ -434,6 +457,9 @@ class Layer:
     outline: None for no outline strokes.
     directions: what the hatching follows, None where it lies at the texture's angles.
     lines, line: its telling lines, None for none, and how they are drawn.
+    color: of its ink, ``#rrggbb``, None for black. Inks of different colours are transparent and know nothing of each
+        other: each is drawn as if it had the sheet to itself.
+    turn: degrees that `texture` is turned already, and strokes are from the field: several inks' hatching is to cross.
     """
 
     samples: GreyImage
@@ -451,6 +477,8 @@ class Layer:
     lines: Lines | None = None
     line: LineChoice = LineChoice()
     swell: float = 0.0
+    color: str | None = None
+    turn: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -17,8 +18,16 @@ LEAST_TONE = 1 / 255  # below it an overlay is paper
 ROUNDS, GOOD = 3, 0.006
 
 
-def steps(illustration: Illustration) -> int:
+def steps(illustration: Illustration, chosen: Sequence[int] | None = None) -> int:
     """How often `layer_strokes` advances by 1."""
+    wanted = set(range(len(illustration.layers)) if chosen is None else chosen)
+    groups = [group for group in of_one_colour(illustration) if wanted & set(group)]
+    apart = (replace(illustration, layers=tuple(illustration.layers[i] for i in group)) for group in groups)
+    return sum(map(_steps, apart))  # whole numbers
+
+
+def _steps(illustration: Illustration) -> int:
+    """How often layers of one colour advance by 1."""
     return len(illustration.layers) * (ROUNDS if _together(illustration) else 1)
 
 
@@ -30,6 +39,7 @@ def layer_strokes(
     seed: int = 0,
     threads: int | None = None,
     pen_pt: float | None = None,
+    chosen: Sequence[int] | None = None,
     advance: Advance = lambda done: None,
 ) -> list[tuple[Strokes, Strokes]]:
     """Hatching and outline strokes of each layer, bottom first, for a picture width_pt wide.
@@ -38,10 +48,41 @@ def layer_strokes(
     and of the layers below, with their ink counted, wherever it has tone itself: so tones add up and no ink is there
     twice. What is left over along the layers' common borders, where neither is free to add ink, is fed back to all of
     them. A layer with the threshold rule is hatched as an illustration that draws itself is on a device, whatever the
-    others are.
+    others are. Layers of one colour share the sheet so; inks of other colours are transparent, and each is drawn as if
+    it had the sheet to itself.
 
     pen_pt: one pen for all strokes; without it small prints have finer ones (`ground.pens`).
+    chosen: numbers of the layers that are wanted; those of other colours are not drawn. The result has these alone.
     """
+    wanted = range(len(illustration.layers)) if chosen is None else chosen
+    drawn: dict[int, tuple[Strokes, Strokes]] = {}
+    for group in of_one_colour(illustration):
+        if not set(group) & set(wanted):
+            continue
+        layers = tuple(illustration.layers[i] for i in group)
+        found = _on_one_sheet(
+            replace(illustration, layers=layers), width_pt, device_dpi=device_dpi, seed=seed + group[0],
+            threads=threads, pen_pt=pen_pt, advance=advance,
+        )  # fmt: skip
+        for i, parts in zip(group, found, strict=True):
+            color = illustration.layers[i].color
+            drawn[i] = replace(parts[0], color=color), replace(parts[1], color=color)
+    return [drawn[i] for i in wanted]
+
+
+def of_one_colour(illustration: Illustration) -> list[list[int]]:
+    """Numbers of the layers of each colour, by the first of each."""
+    groups: dict[str, list[int]] = {}
+    for i, layer in enumerate(illustration.layers):
+        groups.setdefault((layer.color or "#000000").lower(), []).append(i)
+    return list(groups.values())
+
+
+def _on_one_sheet(
+    illustration: Illustration, width_pt: float, *, device_dpi: float | None, seed: int, threads: int | None,
+    pen_pt: float | None, advance: Advance,
+) -> list[tuple[Strokes, Strokes]]:  # fmt: skip
+    """Hatching and outline strokes of layers of one colour."""
     height_pt = width_pt * illustration.height / illustration.width
     layers = tuple(_with_pens(layer, width_pt, device_dpi, pen_pt) for layer in illustration.layers)
     illustration = replace(illustration, layers=layers)
@@ -59,7 +100,7 @@ def layer_strokes(
     greys = [enlarged(layer.samples, layer.edges, size, threads) for layer in illustration.layers]
     best: tuple[int, list[Strokes]] | None = None
     extra: Floats | None = None
-    left = steps(illustration)
+    left = _steps(illustration)
     while left:
         hatched, total = _hatched(
             illustration, width_pt, height_pt, greys, extra, outlines, device_dpi, seed, threads, advance
@@ -137,7 +178,8 @@ def _hatched(
             hatched = blast(
                 wanted, width_pt, height_pt, layer.edges, layer.texture, seed=seed + layer.seed + i,
                 pen_pt=layer.pen_pt, device_dpi=device_dpi, rule=layer.rule, outlines=ink if len(ink) else None,
-                directions=layer.directions, lines=layer.lines, swell=layer.swell, threads=threads,
+                directions=layer.directions and layer.directions.turned(layer.turn), lines=layer.lines,
+                swell=layer.swell, threads=threads,
             )  # fmt: skip
         hatched = hatched.rounded()
         ink = Strokes.joined([ink, hatched])

@@ -29,7 +29,9 @@ class Colour(click.ParamType):
 
     name = "colour"
 
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> tuple[float, ...]:
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> tuple[float, float, float]:
         """(red, green, blue)."""
         if isinstance(value, tuple):
             return value
@@ -38,7 +40,9 @@ class Colour(click.ParamType):
             code = "".join(c + c for c in code)
         if not re.fullmatch("[0-9a-f]{6}", code):
             self.fail(f"{in_quotes(value)} is not #rrggbb or one of {', '.join(NAMED)}", param, ctx)
-        return tuple(int(code[i : i + 2], 16) / 255 for i in (0, 2, 4))
+        from penink_cli.ground.codes import of_code
+
+        return of_code(f"#{code}")
 
 
 class Paper(click.ParamType):
@@ -54,6 +58,8 @@ class Paper(click.ParamType):
             self.fail(error.message, param, ctx)
         return str(value)
 
+
+COLOUR = Colour()
 
 files_argument = click.argument("files", nargs=-1, metavar="[FILE]...", type=click.Path(allow_dash=True))
 
@@ -84,7 +90,7 @@ colour_option = click.option(
     "--color",
     "--colour",
     "colours",
-    type=Colour(),
+    type=COLOUR,
     multiple=True,
     metavar="COLOUR",
     help="Colour of the ink, #rrggbb or a name; given again, of the next layer.  [default: as the file says, or black]",
@@ -158,8 +164,9 @@ def colours_of(
     layers: Sequence[Strokes], chosen: Sequence[tuple[float, float, float]]
 ) -> list[tuple[float, float, float]]:
     """Red, green and blue of each layer's ink: as chosen, else as its file says, else black."""
-    own = (layer.color or "#000000" for layer in layers[len(chosen) :])
-    return [*chosen, *((int(c[1:3], 16) / 255, int(c[3:5], 16) / 255, int(c[5:], 16) / 255) for c in own)]
+    from penink_cli.ground.codes import of_code
+
+    return [*chosen, *(of_code(layer.color or "#000000") for layer in layers[len(chosen) :])]
 
 
 def for_a_pen(

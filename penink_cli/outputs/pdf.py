@@ -9,7 +9,7 @@ from __future__ import annotations
 import io
 import zlib
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:  # the help text needs none of it
     import numpy as np
@@ -20,7 +20,7 @@ if TYPE_CHECKING:  # the help text needs none of it
 
 GUIDE = """
 The page has the picture's size, or is the --paper. Several FILEs are layers, the first at the
-bottom, which viewers can switch on and off.
+bottom, which viewers can switch on and off; coloured ones are transparent inks over one another.
 
 \b
 penink to-pdf photo.strokes.jsonl -o photo.pdf
@@ -33,38 +33,62 @@ MOST = 14400  # a side of a page in user-space units, beyond which viewers diffe
 def write(
     out: Sink, layers: Sequence[Strokes], page: Page, colours: Sequence[tuple[float, float, float]] = ()
 ) -> None:
-    """Write a PDF 1.5 file; the first layer is at the bottom. Colours: red, green, blue (0 … 1) of each layer."""
+    """Write a PDF 1.5 file; the first layer is at the bottom. Colours: red, green, blue (0 … 1) of each layer.
+
+    Where there are several, a layer is a group that is multiplied with what lies below: its ink is transparent, but its
+    own strokes do not darken where they cross.
+    """
     import pydyf
 
+    from penink_cli.outputs import inks
+
     document = pydyf.PDF()
-    content = [b"1 J 1 j\n"]
+    colours = [colours[i] if i < len(colours) else inks.BLACK for i in range(len(layers))]
+    over = inks.overprint(colours)
+    # Sides beyond Acrobat's limit are given in a larger unit.
+    unit = max(1.0, max(page.width, page.height) / MOST)
+    box = pydyf.Array([0, 0, *(round(side / unit, DECIMALS) for side in (page.width, page.height))])
+    begin = b"1 J 1 j\n"
+    if unit > 1:
+        begin = b"%.9f 0 0 %.9f 0 0 cm\n" % (1 / unit, 1 / unit) + begin
+    content = [b"/M gs\n" if over else begin]
+    forms = pydyf.Dictionary()
     properties, groups = pydyf.Dictionary(), pydyf.Array()
     for i, layer in enumerate(layers):
         group = pydyf.Dictionary({"Type": "/OCG", "Name": pydyf.String(layer.layer or f"layer {i + 1}")})
         document.add_object(group)
         groups.append(group.reference)
         properties[f"L{i + 1}"] = group.reference
-        colour = colours[i] if i < len(colours) else (0.0, 0.0, 0.0)
-        paint = b"0 G\n" if colour == (0, 0, 0) else b"%.4f %.4f %.4f RG\n" % colour
-        content += [b"/OC /L%d BDC\n" % (i + 1), paint]
+        colour = colours[i]
+        drawn = [b"0 G\n" if colour == (0, 0, 0) else b"%.4f %.4f %.4f RG\n" % colour]
         swells = layer.swells
         if swells.any():
             layer, wide = layer.taken(~swells), layer.taken(swells)
-            content += [paint.lower(), _outlines(wide, page)]
-        content += [*_paths(layer, page), b"EMC\n"]
-    # Sides beyond Acrobat's limit are given in a larger unit.
-    unit = max(1.0, max(page.width, page.height) / MOST)
-    if unit > 1:
-        content.insert(0, b"%.9f 0 0 %.9f 0 0 cm\n" % (1 / unit, 1 / unit))
-    stream = pydyf.Stream([zlib.compress(b"".join(content), 6)], {"Filter": "/FlateDecode"})
+            drawn += [drawn[0].lower(), _outlines(wide, page)]
+        drawn += _paths(layer, page)
+        if over:
+            alone = {"S": "/Transparency", "CS": "/DeviceRGB", "I": "true"}
+            kind = {"Type": "/XObject", "Subtype": "/Form", "BBox": box, "Group": pydyf.Dictionary(alone)}
+            form = _stream([begin, *drawn], kind)
+            document.add_object(form)
+            forms[f"X{i + 1}"] = form.reference
+            drawn = [b"/X%d Do\n" % (i + 1)]
+        content += [b"/OC /L%d BDC\n" % (i + 1), *drawn, b"EMC\n"]
+    stream = _stream(content, {})
     document.add_object(stream)
+    resources = {"Properties": properties}
+    if over:
+        multiply = pydyf.Dictionary({"M": pydyf.Dictionary({"BM": "/Multiply"})})
+        resources |= {"XObject": forms, "ExtGState": multiply}
     leaf = {
         "Type": "/Page",
         "Parent": document.pages.reference,
         "Contents": stream.reference,
-        "MediaBox": pydyf.Array([0, 0, *(round(side / unit, DECIMALS) for side in (page.width, page.height))]),
-        "Resources": pydyf.Dictionary({"Properties": properties}),
+        "MediaBox": box,
+        "Resources": pydyf.Dictionary(resources),
     }
+    if over:
+        leaf["Group"] = pydyf.Dictionary({"S": "/Transparency", "CS": "/DeviceRGB"})
     if unit > 1:
         leaf["UserUnit"] = round(unit, 9)
     document.add_page(pydyf.Dictionary(leaf))
@@ -74,6 +98,12 @@ def write(
     held = io.BytesIO()
     document.write(held, version=b"1.5" if unit == 1 else b"1.6")
     out.write(held.getvalue())
+
+
+def _stream(content: list[bytes], entries: dict[str, object]) -> Any:
+    import pydyf
+
+    return pydyf.Stream([zlib.compress(b"".join(content), 6)], {**entries, "Filter": "/FlateDecode"})
 
 
 def _paths(layer: Strokes, page: Page) -> list[bytes]:

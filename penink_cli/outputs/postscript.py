@@ -110,21 +110,39 @@ def write(
     colours: Sequence[tuple[float, float, float]] = (),
     compress: bool = False,
     order: Callable[[Strokes], Strokes] = lambda strokes: strokes,
+    separations: bool = False,
 ) -> None:
     """Write one EPS, or, where the page is a paper, one page for a printer.
 
     layers: the first at the bottom. colours: red, green, blue (0 … 1) of each layer; black if there is none.
     order: brings strokes into an order with short ways between them.
+    separations: a plate a page: each layer by itself, and in black. The page is a paper.
     """
-    _write_head(out, layers, page, compress)
+    _write_head(out, layers, page, compress, len(layers) if separations else 1)
     units = _units(layers)
+    pages = [[i] for i in range(len(layers))] if separations else [list(range(len(layers)))]
+    for number, shown in enumerate(pages, 1):
+        label = _text(layers[shown[0]].layer or f"layer {number}") if separations else b"1"
+        out.write(b"%%%%Page: %s %d\n" % (label, number))
+        if separations:
+            out.write(b"%%%%PlateColor: %s\n" % label)
+        _write_page(out, [(i, layers[i]) for i in shown], page, units, () if separations else colours, compress, order)
+    out.write(b"%%Trailer\n%%EOF\n")
+
+
+def _write_page(
+    out: Sink, layers: Sequence[tuple[int, Strokes]], page: Page, units: int,
+    colours: Sequence[tuple[float, float, float]], compress: bool, order: Callable[[Strokes], Strokes],
+) -> None:  # fmt: skip
+    """The layers, each with its number, on a page of their own."""
     # The position starts at the sheet's top-left corner; y is turned up only here.
     out.write(b"gsave penink begin\n1 setlinecap 1 setlinejoin [] 0 setdash\n")
     if page.landscape:
         out.write(b"90 rotate 0 %s translate\n" % _number(-page.height))
     out.write(b"%s %s translate 1 %d div dup scale\n" % (_number(page.x), _number(page.height - page.y), units))
+    out.write(b"/x 0 def /y 0 def\n" if layers[0][0] else b"")
     at = (0, 0)
-    for i, layer in enumerate(layers):
+    for i, layer in layers:
         name = layer.layer or f"layer {i + 1}"
         out.write(b"%%%%BeginObject: %s\n" % _text(name))
         colour = colours[i] if i < len(colours) else (0.0, 0.0, 0.0)
@@ -137,10 +155,10 @@ def write(
             for part in body:
                 out.write(part)
         out.write(b"%%EndObject\n")
-    out.write(b"end grestore\n%%PageTrailer\nshowpage\n%%Trailer\n%%EOF\n")
+    out.write(b"end grestore\n%%PageTrailer\nshowpage\n")
 
 
-def _write_head(out: Sink, layers: Sequence[Strokes], page: Page, compress: bool) -> None:
+def _write_head(out: Sink, layers: Sequence[Strokes], page: Page, compress: bool, pages: int) -> None:
     x0, y0, x1, y1 = 0.0, 0.0, page.width, page.height
     if page.paper:  # what is printed on the paper, not the paper
         x0, y0 = page.x, page.y
@@ -159,7 +177,7 @@ def _write_head(out: Sink, layers: Sequence[Strokes], page: Page, compress: bool
     out.write(b"%!PS-Adobe-3.0\n" if page.paper else b"%!PS-Adobe-3.0 EPSF-3.0\n")
     out.write(b"%%%%BoundingBox: %d %d %d %d\n" % tuple(rough))
     out.write(b"%%%%HiResBoundingBox: %s %s %s %s\n" % tuple(map(_number, exact)))
-    out.write(b"%%Creator: penink\n%%Pages: 1\n%%DocumentData: Clean7Bit\n")
+    out.write(b"%%%%Creator: penink\n%%%%Pages: %d\n%%%%DocumentData: Clean7Bit\n" % pages)
     if compress:
         out.write(b"%%LanguageLevel: 3\n")
     elif page.paper:
@@ -178,7 +196,6 @@ def _write_head(out: Sink, layers: Sequence[Strokes], page: Page, compress: bool
     if page.paper:
         out.write(b"%%%%BeginSetup\n%%%%BeginFeature: *PageSize %s\n" % page.paper.encode("ascii"))
         out.write(b"<< /PageSize [%s %s] >> setpagedevice\n%%%%EndFeature\n%%%%EndSetup\n" % size)
-    out.write(b"%%Page: 1 1\n")
 
 
 def _units(layers: Sequence[Strokes]) -> int:

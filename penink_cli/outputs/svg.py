@@ -13,7 +13,7 @@ import numpy as np
 
 from penink_cli.formats.strokes import Sink
 from penink_cli.ground.model import Floats, Ints, Strokes
-from penink_cli.outputs import swelling, words
+from penink_cli.outputs import inks, swelling, words
 from penink_cli.outputs.page import Page
 
 MM = 25.4 / 72
@@ -24,7 +24,12 @@ BATCH = 20000
 def write(
     out: Sink, layers: Sequence[Strokes], page: Page, colours: Sequence[tuple[float, float, float]] = ()
 ) -> None:
-    """Write an SVG 1.1 file; the first layer is at the bottom. Colours: red, green, blue (0 … 1) of each layer."""
+    """Write an SVG 1.1 file; the first layer is at the bottom. Colours: red, green, blue (0 … 1) of each layer.
+
+    Where there are several, a layer's ink is transparent for what lies below.
+    """
+    colours = [colours[i] if i < len(colours) else inks.BLACK for i in range(len(layers))]
+    blend = ' style="mix-blend-mode:multiply"' if inks.overprint(colours) else ""
     width, height = _number(page.width * MM), _number(page.height * MM)
     out.write(
         '<?xml version="1.0" encoding="UTF-8"?>\n'
@@ -33,7 +38,7 @@ def write(
     )
     for i, layer in enumerate(layers):
         label = f"{i + 1} {_xml(layer.layer)}" if layer.layer else f"{i + 1}"
-        red, green, blue = colours[i] if i < len(colours) else (0.0, 0.0, 0.0)
+        red, green, blue = colours[i]
         colour = f"#{_hex(red)}{_hex(green)}{_hex(blue)}"
         swells = layer.swells
         layer, wide = (layer.taken(~swells), layer.taken(swells)) if swells.any() else (layer, None)
@@ -42,7 +47,7 @@ def write(
         out.write(
             f'<g id="layer{i + 1}" inkscape:groupmode="layer" inkscape:label={quoteattr(label)}\n'
             f'   fill="none" stroke="{colour}" stroke-width="{_number(pen * MM, 4)}" '
-            'stroke-linecap="round" stroke-linejoin="round">\n'.encode()
+            f'stroke-linecap="round" stroke-linejoin="round"{blend}>\n'.encode()
         )
         for start in range(0, len(layer), BATCH):
             out.write(_paths(layer, start, min(start + BATCH, len(layer)), page, pen))

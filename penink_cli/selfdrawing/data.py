@@ -65,7 +65,7 @@ def family(illustration: Illustration, i: int) -> int:
 
     def alike(layer: Layer) -> bool:
         named = layer.texture_name is not None and layer.texture_name == mine.texture_name
-        return (named or layer.texture is mine.texture) and layer.pen_pt == mine.pen_pt
+        return (named or layer.texture is mine.texture) and (layer.pen_pt, layer.turn) == (mine.pen_pt, mine.turn)
 
     return next(k for k, layer in enumerate(illustration.layers) if alike(layer))
 

@@ -70,6 +70,30 @@ def test_the_manifest_wastes_nothing(packed):
         assert {i.compress_type for i in z.infolist()} == {zipfile.ZIP_STORED}
 
 
+def test_plates_share_their_edges_and_keep_their_colour_and_turn(penink, loose, tmp_path):
+    manifest = json.loads(loose.read_text())
+    texture = penink("texture", "show", "--json", "parallel").stdout
+    (loose.parent / "own.texture.json").write_bytes(texture)
+    plate = {**manifest["layers"][1], "texture": "own.texture.json"}
+    manifest["layers"] = [
+        {**plate, "color": "#00aeef", "turn": 45},
+        {**plate, "color": "#EC008c", "turn": 170.5, "name": "magenta"},
+    ]
+    (loose.parent / "plates.illustration.json").write_text(json.dumps(manifest))
+    packed = penink("pack", loose.parent / "plates.illustration.json").stdout
+    assert list(contents(packed)) == ["illustration.json", "0.samples", "0.edges", "0.directions", "0.texture"]
+    (tmp_path / "plates.penink").write_bytes(packed)
+    assert penink("pack", tmp_path / "plates.penink").stdout == packed  # turned once, not again
+    for name, color in (("1", "#00aeef"), ("magenta", "#EC008c")):
+        options = ("--width", "1in", "--layer", name)
+        drawn = penink("render", *options, tmp_path / "plates.penink").stdout
+        assert drawn == penink("render", *options, loose.parent / "plates.illustration.json").stdout
+        assert json.loads(drawn.splitlines()[0])["color"] == color
+    refusal = penink("render", "--width", "1in", tmp_path / "plates.penink")
+    assert refusal.returncode == 1
+    assert b"layers of 2 colours" in refusal.stderr
+
+
 def refused(penink, data: bytes, path) -> str:
     """The one line of the refusal, by a process; nothing is written."""
     path.write_bytes(data)

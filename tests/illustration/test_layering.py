@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from penink_cli.ground.model import EdgeList, GreyImage, Illustration, Layer, OutlineChoice, Strokes
@@ -52,3 +54,36 @@ def test_it_advances_as_often_as_it_says():
         steps: list[int] = []
         layering.layer_strokes(some, 36.0, advance=steps.append)
         assert sum(steps) == layering.steps(some)
+
+
+def in_colours(illustration: Illustration, *colours: str | None) -> Illustration:
+    layers = tuple(replace(layer, color=color) for layer, color in zip(illustration.layers, colours, strict=True))
+    return replace(illustration, layers=layers)
+
+
+def test_inks_of_different_colours_know_nothing_of_each_other():
+    illustration, _ = two_layers(24)
+    apart = layering.layer_strokes(in_colours(illustration, "#00aeef", None), 72.0)
+    alone = [
+        layering.layer_strokes(Illustration(144, 144, (layer,)), 72.0, seed=i)[0]
+        for i, layer in enumerate(illustration.layers)
+    ]
+    for pair, expected, color in zip(apart, alone, ("#00aeef", None), strict=True):
+        for one, other in zip(pair, expected, strict=True):
+            assert np.array_equal(one.points, other.points)
+            assert one.color == color
+    together = layering.layer_strokes(illustration, 72.0)
+    assert not np.array_equal(together[1][0].points, apart[1][0].points)
+    black = layering.layer_strokes(in_colours(illustration, "#000000", None), 72.0)
+    assert np.array_equal(together[1][0].points, black[1][0].points)
+
+
+def test_a_layer_alone_is_drawn_with_its_colour_only():
+    illustration, _ = two_layers(24)
+    coloured = in_colours(illustration, "#00aeef", None)
+    every = layering.layer_strokes(coloured, 72.0)
+    steps: list[int] = []
+    only = layering.layer_strokes(coloured, 72.0, chosen=[1], advance=steps.append)
+    assert len(only) == 1
+    assert np.array_equal(only[0][0].points, every[1][0].points)
+    assert sum(steps) == layering.steps(coloured, [1]) == 1

@@ -1,4 +1,4 @@
-"""Grey PNG files, written in bands: no date, no software's name, the resolution noted.
+"""PNG files, grey or coloured, written in bands: no date, no software's name, the resolution noted.
 
 An imaging library would want the whole picture at once, and a moment to be imported.
 """
@@ -15,17 +15,20 @@ from penink_cli.formats.strokes import Sink
 from penink_cli.outputs.raster.cover import Band
 
 
-def write(out: Sink, size: tuple[int, int], dpi: float, bits: int, bands: Iterable[Band]) -> None:
-    """Write a grey PNG of width × height pixels.
+def write(
+    out: Sink, size: tuple[int, int], dpi: float, bits: int, bands: Iterable[Band], coloured: bool = False
+) -> None:
+    """Write a PNG of width × height pixels.
 
-    bands: (rows, width) values 0 … 2^bits - 1 from the top. PNG has 1, 2, 4 and 8 bits; values of
+    bands: (rows, width) values 0 … 2^bits - 1 from the top, or (rows, width, 3) of sRGB where coloured is true, which
+    has 8 bits. PNG has 1, 2, 4 and 8 bits; values of
     another depth are stretched to 8.
     """
     width, height = size
     depth = bits if bits in (1, 2, 4) else 8
     stretch = ((2**depth - 1) / (2**bits - 1) * np.arange(2**bits) + 0.5).astype(np.uint8)
     out.write(b"\x89PNG\r\n\x1a\n")
-    _chunk(out, b"IHDR", struct.pack(">IIBBBBB", width, height, depth, 0, 0, 0, 0))
+    _chunk(out, b"IHDR", struct.pack(">IIBBBBB", width, height, depth, 2 if coloured else 0, 0, 0, 0))
     per_metre = min(round(dpi / 0.0254), 2**31 - 1)
     _chunk(out, b"pHYs", struct.pack(">IIB", per_metre, per_metre, 1))
     deflate = zlib.compressobj(6)
@@ -35,6 +38,7 @@ def write(out: Sink, size: tuple[int, int], dpi: float, bits: int, bands: Iterab
             places = np.arange(8 // depth, dtype=np.uint8)[::-1] * depth
             padded = np.pad(rows, ((0, 0), (0, -width % len(places))))
             rows = np.bitwise_or.reduce(padded.reshape(len(rows), -1, len(places)) << places, axis=2).astype(np.uint8)
+        rows = rows.reshape(len(rows), -1)
         filtered = np.zeros((len(rows), rows.shape[1] + 1), np.uint8)  # each row begins with its filter: none
         filtered[:, 1:] = rows
         _chunk(out, b"IDAT", deflate.compress(filtered.data))

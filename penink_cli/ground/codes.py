@@ -1,0 +1,16 @@
+"""Colours by their codes."""
+
+from __future__ import annotations
+
+Colour = tuple[float, float, float]  # red, green, blue of sRGB, 0 … 1
+
+
+def of_code(code: str) -> Colour:
+    """Red, green and blue of ``#rrggbb``."""
+    red, green, blue = (int(code[i : i + 2], 16) / 255 for i in (1, 3, 5))
+    return red, green, blue
+
+
+def code_of(colour: Colour) -> str:
+    """``#rrggbb``."""
+    return "#" + "".join(f"{round(255 * part):02x}" for part in colour)

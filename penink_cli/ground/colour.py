@@ -1,0 +1,47 @@
+"""sRGB's curve, and CIE Lab, the same to the last bit everywhere."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from penink_cli.ground import exact
+
+Floats = npt.NDArray[np.float64]
+
+LEAST = 216 / 24389  # of CIE's cube root, which is straight below
+
+
+def linear(encoded: npt.ArrayLike) -> Floats:
+    """Light of sRGB's values, both 0 … 1."""
+    v = np.asarray(encoded, np.float64)
+    return np.asarray(np.where(v <= 0.04045, v / 12.92, exact.power((v + 0.055) / 1.055, 2.4)))
+
+
+def encoded(light: npt.ArrayLike) -> Floats:
+    """sRGB's values of light, both 0 … 1."""
+    v = np.asarray(light, np.float64)
+    return np.asarray(np.where(v <= 0.0031308, v * 12.92, 1.055 * exact.power(v, 1 / 2.4) - 0.055))
+
+
+#: Light to X, Y, Z of a white of 1, 1, 1 (sRGB, D65).
+XYZ = (
+    (0.412453 / 0.950456, 0.357580 / 0.950456, 0.180423 / 0.950456),
+    (0.212671, 0.715160, 0.072169),
+    (0.019334 / 1.088754, 0.119193 / 1.088754, 0.950227 / 1.088754),
+)
+
+
+def lab_of_light(light: Floats) -> Floats:
+    """Lab (…, 3) of linear sRGB (…, 3)."""
+    x, y, z = (root(r * light[..., 0] + g * light[..., 1] + b * light[..., 2]) for r, g, b in XYZ)
+    return np.stack([116 * y - 16, 500 * (x - y), 200 * (y - z)], axis=-1)
+
+
+def root(t: Floats) -> Floats:
+    """CIE's cube root, with its straight piece near 0; by Newton's method."""
+    v = np.maximum(t, LEAST)
+    found = 0.25 + 0.75 * v
+    for _ in range(6):
+        found = found - (found * found * found - v) / (3 * found * found)
+    return np.where(t > LEAST, found, (24389 / 27 * t + 16) / 116)

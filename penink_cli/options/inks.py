@@ -1,0 +1,143 @@
+"""Inks by the options of `separate` and `draw`: which, on which paper, and the plate of each."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import click
+from click.core import ParameterSource
+
+from penink_cli.ground.codes import Colour, code_of
+from penink_cli.ground.errors import in_quotes
+from penink_cli.options.common import Finite
+from penink_cli.options.layers import COLOUR
+
+if TYPE_CHECKING:
+    from penink_cli.ground.model import ColourImage, GreyImage
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+LEAST_INKS, MOST_INKS = 2, 6
+BLACK_SHARE = 0.8
+
+
+@dataclass(frozen=True)
+class Inks:
+    """Colours, and what each is called."""
+
+    colours: tuple[Colour, ...]
+    names: tuple[str, ...]
+
+    def number(self, plate: str) -> int:
+        """The place of an ink by its name, its place from 1, or its colour; UsageError for any other."""
+        if plate.lower() in self.names:
+            return self.names.index(plate.lower())
+        if plate.isascii() and plate.isdigit() and 1 <= int(plate[:3]) <= len(self.names):
+            return int(plate) - 1
+        known = ", ".join(self.names)
+        try:
+            return self.colours.index(COLOUR.convert(plate, None, None))
+        except (click.UsageError, ValueError):
+            wanted = f"the inks are {known}, or 1 to {len(self.names)}"
+            raise click.UsageError(f"--plate {in_quotes(plate)}: {wanted}") from None
+
+
+#: What inks of four-colour printing look like on white paper (coated, SWOP).
+CMYK = Inks(
+    (
+        (0.0, 174 / 255, 239 / 255),
+        (236 / 255, 0.0, 140 / 255),
+        (1.0, 242 / 255, 0.0),
+        (35 / 255, 31 / 255, 32 / 255),
+    ),
+    ("cyan", "magenta", "yellow", "black"),
+)
+
+
+class InkList(click.ParamType):
+    """``cmyk``, or two to six colours."""
+
+    name = "inks"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Inks:
+        """The inks."""
+        if isinstance(value, Inks):
+            return value
+        if value.lower() == "cmyk":
+            return CMYK
+        colours: tuple[Colour, ...] = tuple(COLOUR.convert(part.strip(), param, ctx) for part in value.split(","))
+        if not LEAST_INKS <= len(colours) <= MOST_INKS or len(set(colours)) < len(colours):
+            wanted = f"cmyk or {LEAST_INKS} to {MOST_INKS} colours, no two alike"
+            self.fail(f"{in_quotes(value)} is not {wanted}", param, ctx)
+        return Inks(colours, tuple(map(code_of, colours)))
+
+
+inks_option = click.option(
+    "--inks",
+    type=InkList(),
+    metavar="cmyk|COLOUR,…",
+    help="Two to six transparent inks, by their colours on white paper: '#1b4f9c,#d2232a,#f2c300'.",
+)
+
+
+def inks_options(function: F) -> F:
+    """--inks, --paper-color and --black."""
+    for decorate in (
+        click.option(
+            "--black",
+            type=Finite(0, 1),
+            default=BLACK_SHARE,
+            show_default=True,
+            metavar="SHARE",
+            help="Of inks one of which is black: the share of the grey in a colour that is left to it.",
+        ),
+        click.option(
+            "--paper-color",
+            "--paper-colour",
+            "paper_colour",
+            type=COLOUR,
+            default="white",
+            show_default=True,
+            metavar="COLOUR",
+            help="Of the paper that is printed on.",
+        ),
+        inks_option,
+    ):
+        function = decorate(function)
+    return function
+
+
+def refuse_without_plate() -> None:
+    """Raise UsageError for an option that says something of plates only."""
+    context = click.get_current_context()
+    for name, word in (("inks", "inks"), ("paper_colour", "paper-color"), ("black", "black")):
+        if context.get_parameter_source(name) is not ParameterSource.DEFAULT:
+            raise click.UsageError(f"--{word} goes with --plate")
+
+
+_made: tuple[Any, list[GreyImage]] | None = None  # the plates of the last photograph: one call of `draw` wants each
+
+
+def separated(file: str | None, max_pixels: int, inks: Inks, paper: Colour, black: float) -> list[GreyImage]:
+    """The plate of each ink: grey that is white where there is none of it."""
+    global _made  # noqa: PLW0603
+    from penink_cli.options.inputs import read_colours
+
+    photo: ColourImage | GreyImage = read_colours(file, max_pixels)
+    key = photo, inks, paper, black
+    if _made is None or _made[0][0] is not photo or _made[0][1:] != key[1:]:
+        from penink_cli.composition import separation
+        from penink_cli.ground.model import GreyImage as Grey
+
+        found = separation.amounts(photo.values, photo.maxval, inks.colours, paper, black)
+        _made = key, [Grey.from_grey(1.0 - amount) for amount in found]
+    return _made[1]
+
+
+def inverted(plate: GreyImage) -> GreyImage:
+    """All that the plate leaves out of solid ink."""
+    from penink_cli.ground.model import GreyImage as Grey
+
+    return Grey(plate.maxval - plate.values, plate.maxval)

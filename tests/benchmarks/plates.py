@@ -1,0 +1,133 @@
+"""Colour plates against the photograph: ``python -m tests.benchmarks.plates [WIDTH_IN] [NAME …]``.
+
+Every plate is separated, blasted and drawn into pixels; the plates are printed over one another as transparent inks and
+looked at from afar: light is low-passed by σ = 1/16 in, and compared with the photograph's in CIEDE2000. Beside it a
+clustered-dot halftone of the same inks in the same amounts (60 lines an inch at 600 dpi, 15°, 75°, 0° and 45°),
+printed and looked at alike, and the plates' own amounts, which neither can surpass but by chance.
+
+lightness: the mean of L* less the photograph's. moiré: how much of the contrast of the overprint, beyond what is in the
+photograph, lies in periods of 1/10 to 1/3 in, in L*.
+"""
+
+from __future__ import annotations
+
+import sys
+
+import numpy as np
+import skimage.color
+import skimage.data
+from scipy.ndimage import gaussian_filter, zoom
+
+from penink_cli.arrangement.detection import detect_edges
+from penink_cli.blasting.blast import blast
+from penink_cli.composition import separation
+from penink_cli.ground.colour import linear
+from penink_cli.ground.model import GreyImage, turned
+from penink_cli.options.inks import CMYK
+from penink_cli.options.textures import find_texture
+from penink_cli.outputs.page import lay_out
+from penink_cli.outputs.raster import cover
+
+PHOTOGRAPHS = ("astronaut", "coffee", "chelsea", "rocket")
+SPOTS = ((0x1B / 255, 0x4F / 255, 0x9C / 255), (0xD2 / 255, 0x23 / 255, 0x2A / 255), (0xF2 / 255, 0xC3 / 255, 0.0))
+DPI, HALFTONE_DPI, LINES = 300, 600, 60
+ANGLES = (15.0, 75.0, 0.0, 45.0)
+
+
+def seen(light: np.ndarray, dpi: float) -> np.ndarray:
+    """Lab of light (h, w, 3) from afar, 32 places an inch."""
+    low = np.stack([gaussian_filter(light[..., k], dpi / 16, mode="reflect") for k in range(3)], axis=-1)
+    step = dpi / 32
+    rows, columns = (np.round((np.arange(int(n / step)) + 0.5) * step).astype(int) for n in low.shape[:2])
+    small = np.clip(low[rows][:, columns], 0, 1)
+    return skimage.color.rgb2lab(np.where(small <= 0.0031308, small * 12.92, 1.055 * small ** (1 / 2.4) - 0.055))
+
+
+def at_size(values: np.ndarray, width: int, height: int) -> np.ndarray:
+    """(h, w) values at that size."""
+    return np.clip(zoom(values, (height / values.shape[0], width / values.shape[1]), order=1, grid_mode=True,
+                        mode="nearest"), 0, 1)  # fmt: skip
+
+
+def halftone(amounts: np.ndarray, inks: tuple, width_in: float) -> np.ndarray:
+    """Light (h, w, 3) of clustered dots: amounts (n, h, w) against a round spot function of uniform levels."""
+    w = int(width_in * HALFTONE_DPI)
+    h = round(w * amounts.shape[1] / amounts.shape[2])
+    y, x = np.mgrid[0:h, 0:w].astype(np.float32)
+    light = np.ones((h, w, 3), np.float32)
+    level = np.linspace(0, 1, 513)
+    u, v = np.meshgrid(np.arange(512) / 512, np.arange(512) / 512)
+    spots = np.sort((np.cos(2 * np.pi * u) + np.cos(2 * np.pi * v)).ravel())
+    table = np.interp(level, np.linspace(0, 1, len(spots)), spots[::-1])
+    for amount, ink, angle in zip(amounts, inks, ANGLES, strict=False):
+        c, s = np.cos(np.radians(angle)), np.sin(np.radians(angle))
+        k = 2 * np.pi * LINES / HALFTONE_DPI
+        spot = np.cos(k * (c * x + s * y)) + np.cos(k * (c * y - s * x))
+        dot = spot > np.interp(at_size(amount, w, h), level, table)
+        light *= np.where(dot[..., None], np.maximum(linear(ink), 0.004), 1.0)
+    return light
+
+
+def plates(amounts: np.ndarray, inks: tuple, edges, texture_name: str, width_in: float) -> tuple[np.ndarray, list[int]]:
+    """Light (h, w, 3) of the plates' strokes, and how many there are."""
+    texture = find_texture(texture_name)
+    first = texture.layers[0].angle if texture.layers else 0.0
+    apart = [layer.angle - first if layer.turn is None else layer.turn for layer in texture.layers]
+    turn = separation.turns(apart, len(inks))[::-1]
+    light, counts = None, []
+    for place, number in enumerate(separation.lightest_first(inks)):
+        grey = GreyImage.from_grey(1.0 - amounts[number])
+        rows, columns = grey.values.shape
+        width_pt, height_pt = width_in * 72, width_in * 72 * rows / columns
+        n, m = round(width_pt * 2), round(height_pt * 2)
+        tone = at_size(grey.tone, n, m)
+        own = turned(texture, turn[place])
+        drawn = blast(tone, width_pt, height_pt, edges, own, seed=place, device_dpi=None, threads=2)
+        counts.append(len(drawn))
+        ink = np.concatenate(list(cover.bands([drawn], lay_out([drawn]), DPI, 255, 2)))
+        passed = 1.0 - (1.0 - ink[..., None] / 255.0) * (1.0 - np.maximum(linear(inks[number]), 0.004))
+        light = passed if light is None else light * passed
+    assert light is not None
+    return light, counts
+
+
+def figures(light: np.ndarray, dpi: float, wanted: np.ndarray) -> tuple[float, float, float]:
+    """Mean ΔE, bias of L*, and moiré."""
+    lab = seen(light, dpi)
+    rows, columns = (min(a, b) for a, b in zip(lab.shape[:2], wanted.shape[:2], strict=True))
+    lab, wanted = lab[:rows, :columns], wanted[:rows, :columns]
+    off = lab[..., 0] - wanted[..., 0]
+    band = gaussian_filter(off, 0.8) - gaussian_filter(off, 3.0)
+    error = skimage.color.deltaE_ciede2000(lab, wanted)
+    return float(error.mean()), float(off.mean()), float(band.std())
+
+
+def main(arguments: list[str]) -> None:
+    width_in = float(arguments[0]) if arguments else 6.0
+    names = arguments[1:] or PHOTOGRAPHS
+    for name in names:
+        photo = getattr(skimage.data, name)()[..., :3]
+        edges = detect_edges(GreyImage.from_grey(skimage.color.rgb2gray(photo)).grey)
+        w = int(width_in * DPI)
+        h = round(w * photo.shape[0] / photo.shape[1])
+        stored = linear(np.arange(256) / 255.0)[photo]
+        wanted = seen(np.stack([at_size(stored[..., k], w, h) for k in range(3)], axis=-1), DPI)
+        for label, inks in (("cmyk", CMYK.colours), ("three spots", SPOTS)):
+            amounts = separation.amounts(photo, 255, inks)
+            model = separation.printed(amounts, inks)
+            model = np.stack([at_size(model[..., k], w, h) for k in range(3)], axis=-1)
+            best = figures(model, DPI, wanted)
+            dots = figures(halftone(amounts, inks, width_in), HALFTONE_DPI, wanted)
+            print(f"{name} {width_in:g} in, {label}: mean ΔE2000, bias of L*, moiré")
+            print(f"  the amounts themselves  {best[0]:6.2f} {best[1]:+6.2f} {best[2]:6.2f}")
+            print(f"  halftone, {LINES} lines/in   {dots[0]:6.2f} {dots[1]:+6.2f} {dots[2]:6.2f}")
+            for texture in ("crosshatch",):
+                light, counts = plates(amounts, inks, edges, texture, width_in)
+                ours = figures(light, DPI, wanted)
+                parts = f"{ours[0] / dots[0]:.3f} of the halftone, {ours[0] / best[0]:.3f} of the amounts"
+                said = f"  plates, {texture:12}    {ours[0]:6.2f} {ours[1]:+6.2f} {ours[2]:6.2f}"
+                print(f"{said}   {parts}, {sum(counts)} strokes", flush=True)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
