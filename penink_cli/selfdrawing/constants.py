@@ -5,22 +5,51 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from penink_cli.blasting import constants
-from penink_cli.ground.device import MEAN
+from penink_cli.blasting import constants, engraving, form, pen_lines, phase, shares
+from penink_cli.blasting import telling as beside
+from penink_cli.ground.device import EDGE, MEAN
+from penink_cli.lines import strokes as pressed
 from penink_cli.reconstruction.kernels import T1
+from penink_cli.selfdrawing import telling
+from penink_cli.selfdrawing.data import ANGLES
+
+#: Numbers of other modules, by the names they go by in the renderers.
+OTHERS: dict[str, Any] = {
+    "MEAN": MEAN, "EDGE": EDGE, "T1": T1, "ANGLES": ANGLES,
+    "LADDER": telling.LADDER, "LINE_STEP": 1.5, "LINE_FINEST": pressed.FINEST, "LINE_TAPER": pressed.TIP_PT,
+    "LINE_TIP": pressed.TIP, "WHITE_PEN": beside.WHITE.pen_pt, "WHITE_FROM": beside.DARK, "WHITE_FULL": beside.FULL,
+    "MOST_TONE": engraving.MOST, "CLOSED": engraving.CLOSED, "DASH_PT": engraving.DASH_PT,
+    "PERIOD_PT": engraving.PERIOD_PT, "LONGEST_PERIOD_PT": engraving.LONGEST_PERIOD_PT,
+    "LEAST_TONE": engraving.LEAST_TONE, "TAPER_PT": engraving.TAPER_PT, "TAPER_SHARE": engraving.TAPER_SHARE,
+    "TIP_PT": engraving.TIP_PT, "BLUNT": engraving.BLUNT, "WAVER_PT": engraving.WAVER_PT,
+    # a dash is tapered over this part of its length at both ends; waver goes to and fro over so many points
+    "DASH_TAPER": 0.25, "GRAIN": 4 * engraving.WAVER_LENGTH_PT,
+    # tone steps by so many 255ths over an edge at which lines end
+    "WALL": 26,
+}  # fmt: skip
+#: Those that only the page has use for: what follows a field.
+FOLLOWING: dict[str, Any] = {
+    "LINK_LEAK": phase.LEAK, "LINK_LEAST": phase.LEAST, "LINK_ALONG": phase.ALONG,
+    "COARSE_SWEEPS": phase.COARSE_SWEEPS, "SWEEPS": phase.SWEEPS, "LINE_SMOOTHING": pen_lines.SMOOTHING,
+    "GIVES_WAY": shares.GIVES_WAY, "BACK_AFTER": shares.BACK_AFTER,
+    "FAINT": form.FAINT, "SPARSEST": form.SPARSEST, "RAGGED": form.RAGGED, "STROKE_PT": form.STROKE_PT,
+    # cells of tone between the places at which a field is looked up
+    "FIELD_CELLS": 3,
+    # what lines cover where it is black, which the pen's pressure closes
+    "CLOSE": 0.95,
+    # shorter strokes are left out; so much lighter or heavier than usual the pen is pressed at the most, and in black
+    "STROKE_LEAST": 4, "PRESSED": (0.75, 1.3, 1.8),
+}  # fmt: skip
 
 
 def shared() -> dict[str, Any]:
     """Every number, and every row of numbers, that the renderers share with Python."""
-    return {name: value for name, value in vars(constants).items() if name.isupper() and name != "DOT"} | {
-        "MEAN": MEAN,
-        "T1": T1,
-    }
+    return {name: value for name, value in vars(constants).items() if name.isupper() and name != "DOT"} | OTHERS
 
 
 def javascript() -> str:
     """One `const` of all of them."""
-    listed = ", ".join(f"{name} = {_number(value, '[%s]', ', ')}" for name, value in shared().items())
+    listed = ", ".join(f"{name} = {_number(value, '[%s]', ', ')}" for name, value in (shared() | FOLLOWING).items())
     return f"// The numbers of penink_cli/blasting/constants.py.\nconst {listed};\n"
 
 

@@ -11,12 +11,17 @@ from penink_cli.blasting import screens
 from penink_cli.blasting.outlines import Run, runs
 from penink_cli.geometry.trails import trails
 from penink_cli.ground.errors import LimitError
-from penink_cli.ground.model import EdgeList, Floats, GreyImage, Illustration, Ints, Layer
+from penink_cli.ground.model import EdgeList, Engraving, Floats, GreyImage, HatchLayer, Illustration, Ints, Layer, LineChoice
+from penink_cli.selfdrawing import telling
 from penink_cli.selfdrawing.lattice import PARTS, on_lattice
 
 #: Arrays of a Level 2 interpreter hold 65535 entries, one a sample: 254 × 254 and its border.
 MOST_SAMPLES = 254
 MOST_EDGES = 20000
+#: Of telling lines, all together.
+MOST_POINTS = 40000
+#: Directions are sent as so many angles of a half turn, those that an archive keeps.
+ANGLES = 48
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,6 +33,10 @@ class LayerData:
     chains, outlined, vertices, ends: how many chains, how many of them (the first) are outlined, vertices, edges.
     outline_pt: pen of the outlines. gamma: of the tone curve. table: of the texture.
     family: the number of the first layer with the same texture and pen, whose strokes lie in the same places.
+    field: a byte a sample, coded as the samples are, of the directions, in angles of ANGLES a half turn; field_size: how
+    many there are across and down, none where there are no directions.
+    hatch: the texture's layers; turns: degrees of each from the field. engraving: lines that swell, instead of the screens.
+    lines: bytes of the telling lines, `dark` and then `white` of them, on a grid of line_grid. line: how they are drawn.
     """
 
     width: int
@@ -43,6 +52,16 @@ class LayerData:
     gamma: float
     table: screens.ThresholdTable
     family: int
+    field: bytes
+    field_size: tuple[int, int]
+    hatch: tuple[HatchLayer, ...]
+    turns: tuple[float, ...]
+    engraving: Engraving | None
+    lines: bytes
+    dark: int
+    white: int
+    line_grid: tuple[int, int]
+    line: LineChoice
 
 
 def layers(illustration: Illustration) -> list[LayerData]:
@@ -89,8 +108,38 @@ def _layer(layer: Layer, w: int, h: int, number: int, family: int) -> LayerData:
         w, h, layer.levels, samples_bytes(ink_levels(layer), layer.levels), b"".join(chains),
         len(chains), outlined, len(np.unique(ends)), len(ends),
         layer.outline.pen_pt if layer.outline else 0.0, layer.gamma, screens.table(layer.texture, layer.pen_pt),
-        family,
+        family, *_field(layer), *_engraved(layer), *_told(layer), layer.line,
     )  # fmt: skip
+
+
+def _field(layer: Layer) -> tuple[bytes, tuple[int, int]]:
+    """Bytes and size of the directions, none where the texture's strokes do not follow any."""
+    field = layer.directions
+    if field is None or not (layer.texture.engraving.along if layer.texture.engraving else layer.texture.layers):
+        return b"", (0, 0)
+    h, w = field.cos2.shape
+    reach = max(1, -(-max(w, h) // MOST_SAMPLES))
+    cos2, sin2 = field.cos2[::reach, ::reach], field.sin2[::reach, ::reach]  # a few more than are of use
+    turn = np.array([(math.cos(2 * math.pi * k / ANGLES), math.sin(2 * math.pi * k / ANGLES)) for k in range(ANGLES)])
+    angle = np.array([np.argmax(np.multiply.outer(c, turn[:, 0]) + np.multiply.outer(s, turn[:, 1]), axis=1)
+                      for c, s in zip(cos2, sin2, strict=True)])  # fmt: skip
+    return samples_bytes(angle.astype(np.int64), ANGLES), (angle.shape[1], angle.shape[0])
+
+
+def _engraved(layer: Layer) -> tuple[tuple[HatchLayer, ...], tuple[float, ...], Engraving | None]:
+    hatch = layer.texture.layers
+    turns = tuple(one.angle - hatch[0].angle if one.turn is None else one.turn for one in hatch)
+    return hatch, turns, layer.texture.engraving if layer.pen_pt is None else None
+
+
+def _told(layer: Layer) -> tuple[bytes, int, int, tuple[int, int]]:
+    if layer.lines is None or not len(layer.lines):
+        return b"", 0, 0, (0, 0)
+    which, steps = telling.told(layer.lines, layer.line)
+    white = int(np.count_nonzero(layer.lines.white[which]))
+    if int(np.diff(layer.lines.first)[which].sum()) > MOST_POINTS:
+        raise LimitError(f"telling lines of more than {MOST_POINTS} points in an illustration that draws itself")
+    return telling.line_bytes(layer.lines, which, steps), len(which) - white, white, telling.grid(layer.lines)
 
 
 def ink_levels(layer: Layer) -> Ints:

@@ -12,11 +12,14 @@ import zlib
 from typing import Any
 
 from penink_cli.blasting.screens import Screen
-from penink_cli.ground.model import Illustration
+from penink_cli.ground.model import Engraving, Illustration
 from penink_cli.selfdrawing import packer
 from penink_cli.selfdrawing.data import LayerData, is_sent, layers, tile_bytes
 
-SOURCES = ("unpack.js", "constants.js", "reconstruct.js", "drawing.js", "outline.js", "data.js", "raster.js", "page.js")
+SOURCES = (
+    "unpack.js", "constants.js", "reconstruct.js", "drawing.js", "outline.js", "telling.js", "phase.js", "follow.js",
+    "engrave.js", "data.js", "raster.js", "page.js",
+)  # fmt: skip
 
 
 def write(illustration: Illustration, title: str, readable: bool = False, reload: bool = False) -> bytes:
@@ -24,7 +27,7 @@ def write(illustration: Illustration, title: str, readable: bool = False, reload
     parts = layers(illustration)
     data = b"".join(
         part.samples + part.edges + b"".join(tile_bytes(s) for s in part.table.screens if is_sent(s))
-        for part in parts
+        + part.field + part.lines for part in parts
     )
     program = "\n".join(packer.source(name) for name in SOURCES)
     call = f"start({_number(illustration.width)},{_number(illustration.height)},{_layers(parts)},"
@@ -68,10 +71,26 @@ def _description(layer: LayerData) -> dict[str, Any]:
         "outlinePen": layer.outline_pt,
         "gamma": layer.gamma,
         "family": layer.family,
+        "field": layer.field_size,
+        "form": [[turn, one.low, one.high] for turn, one in zip(layer.turns, layer.hatch, strict=True)],
+        "engraving": _engraving(layer.engraving),
+        "told": [layer.dark, layer.white],
+        "lineGrid": layer.line_grid,
+        "linePen": layer.line.pen_pt,
+        "lineEven": layer.line.even,
         "pen": round(layer.table.pen_pt, 4),
         "magnification": round(layer.table.magnification, 4),
         "screens": [_screen(s, layer.table.whole) for s in layer.table.screens],
     }
+
+
+def _engraving(kind: Engraving | None) -> Any:
+    if kind is None:
+        return None
+    return {
+        "spacing": kind.spacing_pt, "finest": kind.finest_pt, "angle": kind.angle, "centre": kind.centre,
+        "waver": kind.waver, "blunt": kind.blunt, "lines": kind.lines,
+    }  # fmt: skip
 
 
 def _screen(screen: Screen, whole: bool) -> Any:

@@ -10,11 +10,14 @@ from __future__ import annotations
 import math
 
 from penink_cli.blasting.screens import Screen
-from penink_cli.ground.model import Illustration
+from penink_cli.ground.model import Engraving, Illustration
 from penink_cli.selfdrawing import packer
 from penink_cli.selfdrawing.data import LayerData, is_sent, layers, tile_bytes
 
-SOURCES = ("constants.ps", "reconstruct.ps", "texture.ps", "drawing.ps", "outline.ps", "data.ps", "page.ps")
+SOURCES = (
+    "constants.ps", "reconstruct.ps", "texture.ps", "drawing.ps", "outline.ps", "telling.ps", "engrave.ps", "data.ps",
+    "page.ps",
+)  # fmt: skip
 PACKINGS = ("flate", "lzw", "readable")
 
 
@@ -57,14 +60,16 @@ def write(illustration: Illustration, packing: str = "flate") -> bytes:
 
 def _bytes(layer: LayerData) -> bytes:
     tiles = [tile_bytes(s) for s in layer.table.screens if is_sent(s)]
-    return layer.samples + layer.edges + b"".join(tiles)
+    return layer.samples + layer.edges + b"".join(tiles) + layer.lines
 
 
 def _read(layer: LayerData) -> str:
     return (
         f"{layer.width} {layer.height} {layer.levels} GetSamples "
         f"{layer.chains} {layer.outlined} {layer.vertices} {layer.ends} GetEdges "
-    ) + " ".join(_tile(i, s, layer.table.whole) for i, s in enumerate(layer.table.screens) if is_sent(s))
+        + "".join(_tile(i, s, layer.table.whole) + " " for i, s in enumerate(layer.table.screens) if is_sent(s))
+        + f"{layer.dark} {layer.white} {layer.line_grid[0]} {layer.line_grid[1]} GetTold"
+    )
 
 
 def _opened(number: int) -> str:
@@ -76,8 +81,19 @@ def _closed(layer: LayerData) -> str:
     screens = " ".join(_screen(i, s) for i, s in enumerate(table.screens))
     return (
         f"/OutlinePen {_number(layer.outline_pt)} def /Gamma {_number(layer.gamma)} def /Family {layer.family} def\n"
+        f"/LinePen {_number(layer.line.pen_pt)} def /LineEven {'true' if layer.line.even else 'false'} def\n"
+        f"/engraving {_engraving(layer.engraving)} def\n"
         f"{_number(table.pen_pt)} {_number(table.magnification)} [ {screens} ] Layer\nend\n"
     )
+
+
+def _engraving(kind: Engraving | None) -> str:
+    if kind is None:
+        return "null"
+    middle = "null null" if kind.centre is None else " ".join(map(_number, kind.centre))
+    spacing = -kind.lines if kind.lines else kind.spacing_pt
+    blunt = "true" if kind.blunt else "false"
+    return f"[ {_number(spacing)} {_number(kind.finest_pt)} {_number(kind.angle)} {middle} {_number(kind.waver)} {blunt} ]"
 
 
 def _screen(number: int, screen: Screen) -> str:

@@ -72,7 +72,7 @@ def test_strokes_that_grow_with_the_picture_are_told_apart(page):
 def test_the_same_strokes_as_on_paper(page):
     runs = page.evaluate("""(() => {
       let length = 0;
-      draw(layers, 108, 108, [0, 0, 108, 108], 0, (layer, screen, count) => {
+      draw(layers, 108, 108, [0, 0, 108, 108], 0, 1, (layer, screen, count) => {
         for (let i = 1; i < count; i++) length += Math.hypot(alongX[i] - alongX[i - 1], alongY[i] - alongY[i - 1]);
       }, () => 0);
       return length;
@@ -196,7 +196,7 @@ def test_it_saves_what_is_seen_as_svg(page, tmp_path):
     while not (files := list(tmp_path.glob("*.svg"))):
         page.until("true")
     root = ElementTree.parse(files[0]).getroot()
-    assert root.attrib["viewBox"] == "250.00 250.00 300.00 300.00"  # 600 pixels of two a unit
+    assert root.attrib["viewBox"] == "0 0 105.833 105.833"  # 600 pixels of two a point
     out = subprocess.run(["rsvg-convert", "-d", "192", "-p", "192", files[0]], capture_output=True, check=True).stdout
     drawn = np.asarray(Image.open(io.BytesIO(out)).convert("LA"))
     saved = 255 - (255 - drawn[..., 0].astype(int)) * drawn[..., 1] // 255

@@ -39,8 +39,8 @@ def on_a_page(picture: Illustration, width: float, tmp_path) -> list[np.ndarray]
     height = width * picture.height / picture.width
     with Page(path, 300, 300) as page:
         text = page.evaluate(f"svg({width}, [0, 0, {width}, {height}], 72 / 600)")
-    lines = "".join(re.findall(r' d="([^"]*)"', text))
-    return [np.array(part.split(), float).reshape(-1, 2) for part in lines.split("M")[1:]]
+    lines = [d.replace("h.001", "").split() for d in re.findall(r' d="M([^"]*)"', text)]
+    return [np.array(line, float).reshape(-1, 2) * 72 / 25.4 for line in lines]
 
 
 def by_render(picture: Illustration, width: float) -> list[np.ndarray]:

@@ -6,7 +6,8 @@ class Reader {
   word() { return this.byte() * 256 + this.byte(); }
 
   // Ink levels, each coded modulo levels as its difference from the median of left, upper and left + upper - corner.
-  samples(w, h, levels) {
+  samples(w, h, levels) { return this.levels(w, h, levels).map(v => Math.floor(v * 255 / (levels - 1) + 0.5)); }
+  levels(w, h, levels) {
     const level = new Uint8Array(w * h);
     for (let j = 0; j < h; j++) for (let i = 0; i < w; i++) {
       const k = j * w + i, left = i ? level[k - 1] : j ? level[k - w] : 0, up = j ? level[k - w] : left;
@@ -14,7 +15,7 @@ class Reader {
       const median = Math.max(Math.min(left, up), Math.min(Math.max(left, up), left + up - corner));
       level[k] = (median + this.byte()) % levels;
     }
-    return level.map(v => Math.floor(v * 255 / (levels - 1) + 0.5));
+    return level;
   }
 
   // Chains of edges: number of edges, first vertex, steps, in 16ths of a sample.
@@ -45,6 +46,27 @@ class Reader {
     return {xs, ys, ends, outlines};
   }
 
+  // Directions, coded as samples are: pictures of the cosine and the sine of twice the angle, in 127.5ths and 127.5 more.
+  field(w, h, {picture, xs, ys, ends}) {
+    if (!w) return null;
+    const angle = this.levels(w, h, ANGLES), part = of => new Picture(w, h, angle.map(k => byte(127.5 + 127.5 * of(2 * Math.PI * k / ANGLES))),
+      xs.map(x => (x + 0.5) * w / picture.w - 0.5), ys.map(y => (y + 0.5) * h / picture.h - 0.5), ends);
+    const field = {cos: part(Math.cos), sin: part(Math.sin)};
+    for (const half of [field.cos, field.sin]) half.nodesIn = [];           // what an edge hides is not looked for around its end
+    return field;
+  }
+
+  // Telling lines: step of the ladder, breadth, number of points, the first, differences of steps, weights.
+  told(dark, white) {
+    return Array.from({length: dark + white}, (_, k) => {
+      const enters = this.byte(), breadth = this.word(), count = this.word();
+      let x = this.word(), y = this.word(), dx = 0, dy = 0;
+      const xs = [x], ys = [y];
+      for (let i = 1; i < count; i++) { xs.push(x += dx += this.byte() - 128); ys.push(y += dy += this.byte() - 128); }
+      return {enters, breadth, xs, ys, weights: xs.map(() => this.byte() / 15), white: k >= dark};
+    });
+  }
+
   // Strokes that are not lines: threshold, first point, three steps from there, in quarters of a point.
   tile({tile, fresh, covers, whole, widens, strokes: count}) {
     const strokes = [];
@@ -63,12 +85,13 @@ function readLayers(description, bytes) {
   const reader = new Reader(bytes);
   return description.map(d => {
     const ink = reader.samples(d.w, d.h, d.levels), {xs, ys, ends, outlines} = reader.edges(d.chains, d.outlined);
-    const screens = [];
+    const screens = [], picture = new Picture(d.w, d.h, ink, xs, ys, ends);
     d.screens.forEach((s, i) =>
       screens.push(Array.isArray(s) ? lines(i, ...s) : "again" in s ? again(screens[0], s.again) : reader.tile(s)));
     const curve = d.gamma === 1 ? null :
       Uint8Array.from({length: 256}, (_, t) => Math.floor(255 * (1 - (1 - t / 255) ** d.gamma) + 0.5));
-    return {picture: new Picture(d.w, d.h, ink, xs, ys, ends), screens, outlines, curve,
+    const field = reader.field(...d.field, {picture, xs, ys, ends}), told = reader.told(...d.told);
+    return {picture, screens, outlines, curve, field, told, form: d.form, engraving: d.engraving, lineGrid: d.lineGrid, linePen: d.linePen, lineEven: d.lineEven,
       family: d.family, pen: d.pen, magnification: d.magnification, outlinePen: d.outlinePen / d.magnification};
   });
 }

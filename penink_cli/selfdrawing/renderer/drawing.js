@@ -81,12 +81,11 @@ class Blocks {
     this.x1 = Math.min(width, this.x0 + this.across * side);
     this.y1 = Math.min(height, this.y0 + this.down * side);
   }
-  cover(ink) {                                                // ink: square points laid on each block
-    ink.forEach((area, k) => {
-      const x = this.x0 + k % this.across * this.side, y = this.y0 + Math.floor(k / this.across) * this.side;
-      this.bare[k] *= 1 - Math.min(1, area / (Math.min(this.side, this.width - x) * Math.min(this.side, this.height - y)));
-    });
+  area(k) {                                                   // of a block, square points
+    const x = this.x0 + k % this.across * this.side, y = this.y0 + Math.floor(k / this.across) * this.side;
+    return Math.min(this.side, this.width - x) * Math.min(this.side, this.height - y);
   }
+  cover(ink) { ink.forEach((area, k) => { this.bare[k] *= 1 - Math.min(1, area / this.area(k)); }); }     // square points laid on each block
 }
 
 // A layer in the part of the picture that matters. Its tone lies on a grid of its own of about a cell a unit.
@@ -99,6 +98,7 @@ class Sheet {
     Object.assign(this, {layer, blocks, gain: gain / unit / layer.pen, unit, width, height, n, m, perX, perY, x0, y0, wide: x1 - x0, tall: y1 - y0});
     this.tone = picture.tone(n, m, x0, y0, x1, y1);
     if (layer.curve) for (let k = 0; k < this.tone.length; k++) this.tone[k] = layer.curve[this.tone[k]];
+    lighten(this, tellingOf(layer, blocks.width, blocks.height, true));
     this.sum = this.tone;                                     // of this layer and those below
   }
 
@@ -246,12 +246,10 @@ class Sheet {
     return answer;
   }
 
-  // The feedback: what the first pass would lack, smoothed, is added to the tone.
-  correct() {
-    const {tone, sum, wide, tall, blocks: {bare, across, down, left, top, side}} = this;
-    const lack = new Float64Array(across * down), cells = new Float64Array(across * down);
-    const perX = this.unit / this.perX / side, perY = this.unit / this.perY / side;      // blocks a cell
-    const inX = Int32Array.from({length: wide}, (_, p) => clamp(Math.floor((this.x0 + p + 0.5) * perX) - left, 0, across - 1));
+  // What each block would lack, in 255ths, smoothed.
+  lacking() {
+    const {sum, wide, tall, blocks: {bare, across, down, left, top}} = this, lack = new Float64Array(across * down), cells = new Float64Array(across * down);
+    const {perX, perY} = this.blocksPerCell(), inX = Int32Array.from({length: wide}, (_, p) => clamp(Math.floor((this.x0 + p + 0.5) * perX) - left, 0, across - 1));
     for (let q = 0; q < tall; q++) {
       const row = clamp(Math.floor((this.y0 + q + 0.5) * perY) - top, 0, down - 1) * across;
       for (let p = 0; p < wide; p++) { const k = row + inX[p]; lack[k] += sum[q * wide + p]; cells[k]++; }
@@ -267,6 +265,13 @@ class Sheet {
     };
     for (let j = 0; j < down; j++) soften(j * across, 1, across);
     for (let i = 0; i < across; i++) soften(i, across, down);
+    return lack;
+  }
+  blocksPerCell() { return {perX: this.unit / this.perX / this.blocks.side, perY: this.unit / this.perY / this.blocks.side}; }
+
+  // The feedback: what the first pass would lack is added to the tone.
+  correct() {
+    const {tone, wide, tall, blocks: {bare, across, down, left, top}} = this, lack = this.lacking(), {perX, perY} = this.blocksPerCell();
     const taken = this.layer.screens[0].level ? 1 : TAKEN_UP;  // of textures that are not lines half of the lack is chance
     lack.forEach((more, k) => { lack[k] = more *= taken; bare[k] = clamp(bare[k] - more / 255, 0, 1); });
     const place = (k, per, first, count) => {
@@ -296,21 +301,30 @@ function point(count, t, steps) {
 }
 
 // Draws the layers of a picture of width by height points in a window (x0 y0 x1 y1) of it, for a device that adds so many points
-// (gain) to an upright stroke. Calls stroke(layer, screen, count)
-// with strokes of hatching and outline(layer, xs, ys, pen) with outlines, in units of the layer, of which a point has `magnification`.
-function draw(layers, width, height, window, gain, stroke, outline) {
+// (gain) to an upright stroke; `every`: cells of tone a node of the field, 2 in a hurry. Calls stroke(layer, screen, count, pressure)
+// with strokes of hatching, outline(layer, xs, ys, pen) with outlines, in units of the layer, of which a point has `magnification`,
+// and fill(layer, xs, ys) with shapes, in points.
+function draw(layers, width, height, window, gain, every, stroke, outline, fill) {
   const blocks = new Blocks(width, height, window, BLOCK * Math.max(...layers.map(layer => layer.magnification)));
   if (!blocks.bare.length) return;
   const sheets = layers.map(layer => new Sheet(layer, blocks, gain)), outlines = layers.map(layer => outlinesOf(layer, blocks));
+  const told = layers.map(layer => tellingOn(layer, blocks, gain));
   addUp(sheets);
   for (const sheet of sheets) {
+    if (sheet.layer.engraving) {
+      const {unit} = sheet;
+      engrave(sheet, every, (layer, xs, ys) => fill(layer, xs.map(x => x * unit), ys.map(y => y * unit)));
+      continue;
+    }
+    if (sheet.layer.field) { follow(sheet, every, stroke); continue; }
     let most = sheet.patches();
     for (const screen of sheet.layer.screens) sheet.hatch(screen, most);
     sheet.correct();
     most = sheet.patches();
-    for (const screen of sheet.layer.screens) sheet.hatch(screen, most, count => stroke(sheet.layer, screen, count));
+    for (const screen of sheet.layer.screens) sheet.hatch(screen, most, count => stroke(sheet.layer, screen, count, 1));
   }
   layers.forEach((layer, k) => outlines[k].forEach(([xs, ys, pen]) => outline(layer, xs, ys, pen)));
+  layers.forEach((layer, k) => told[k].forEach(line => outlined(line).forEach(([xs, ys]) => fill(layer, xs, ys))));
 }
 
 // Tones of layers add up. Where a layer lies over one of the same texture, its strokes stand for both; over others it is hatched the

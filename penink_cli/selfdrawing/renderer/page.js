@@ -5,7 +5,7 @@ const PRINTER = 72 / 600;                                     // what a printer 
 const MOST = 64;                                              // greatest magnification
 const canvas = document.querySelector("canvas"), status = document.querySelector("output");
 const view = {zoom: 1, x: 0, y: 0};                           // x, y: of the picture's corner, CSS pixels
-let layers = [], size = [1, 1], image = null, shown = null, due = 0, painted = {ms: 0, strokes: 0, count: 0};
+let layers = [], size = [1, 1], image = null, shown = null, due = 0, later = 0, painted = {ms: 0, strokes: 0, count: 0, every: 1};
 
 // How large the picture is at zoom 1: it fits the window.
 const fitted = () => Math.min(canvas.clientWidth / size[0], canvas.clientHeight / size[1]) * 0.96;
@@ -34,44 +34,103 @@ function moved() {
     canvas.style.transform = `translate(${view.x - shown.x * by}px,${view.y - shown.y * by}px) scale(${by})`;
   }
   clearTimeout(due);
-  due = setTimeout(repaint, painted.ms < 60 ? 0 : 120);
+  clearTimeout(later);
+  due = setTimeout(hurry, painted.ms < 60 ? 0 : 120);
+}
+// Along a field coarsely at first, and finely when nothing moves.
+function hurry() {
+  if (!layers.some(layer => layer.field)) { repaint(); return; }
+  repaint(2);
+  later = setTimeout(() => repaint(), 250);
 }
 
-function repaint() {
+function repaint(every = 1) {
   const began = performance.now(), ratio = window.devicePixelRatio || 1, wide = Math.round(canvas.clientWidth * ratio), tall = Math.round(canvas.clientHeight * ratio);
   settle();
   const per = UNIT * ratio, x = view.x * ratio, y = view.y * ratio, right = x + size[0] * scale() * ratio, bottom = y + size[1] * scale() * ratio;
   const raster = new Raster(wide, tall, ...[x, y, right, bottom].map(Math.round));
   let strokes = 0;
-  draw(layers, size[0] * scale() / UNIT, size[1] * scale() / UNIT, [-x / per, -y / per, (wide - x) / per, (tall - y) / per], 0, (layer, screen, count) => {
-    raster.stroke(alongX, alongY, count, per * layer.magnification, x, y, layer.pen * layer.magnification * per / 2, false);
+  draw(layers, size[0] * scale() / UNIT, size[1] * scale() / UNIT, [-x / per, -y / per, (wide - x) / per, (tall - y) / per], 0, every, (layer, screen, count, pressure) => {
+    raster.stroke(alongX, alongY, count, per * layer.magnification, x, y, pressure * layer.pen * layer.magnification * per / 2, false);
     strokes++;
-  }, (layer, xs, ys, pen) => raster.stroke(xs, ys, xs.length, per * layer.magnification, x, y, pen * layer.magnification * per / 2, true));
+  }, (layer, xs, ys, pen) => raster.stroke(xs, ys, xs.length, per * layer.magnification, x, y, pen * layer.magnification * per / 2, true),
+  (layer, xs, ys) => { raster.fill(xs, ys, per, x, y); strokes++; });
   if (!image || image.width !== wide || image.height !== tall) image = new ImageData(canvas.width = wide, canvas.height = tall);
   raster.show(image);
   canvas.style.transform = "";
   canvas.getContext("2d").putImageData(image, 0, 0);
   shown = {x: view.x, y: view.y, scale: scale()};
-  painted = {ms: performance.now() - began, strokes, count: painted.count + 1};
+  painted = {ms: performance.now() - began, strokes, count: painted.count + 1, every};
   status.value = `${view.zoom.toFixed(view.zoom < 10 ? 1 : 0)}×`;
 }
 
 // A window (points) of the picture, drawn at so many points wide, as an SVG document for a device whose pixels are `gain` points.
+// Written as penink_cli/outputs/svg.py does: in millimetres, a group a layer, a path a stroke, shapes for strokes that swell; all
+// of it within the frame, for a plotter knows no clip path.
 function svg(width, window, gain) {
-  const height = width * size[1] / size[0], [x0, y0, x1, y1] = window, fixed = x => x.toFixed(2), paths = new Map();
+  const height = width * size[1] / size[0], [x0, y0] = window, x1 = Math.min(window[2], width), y1 = Math.min(window[3], height), mm = x => +(x * 25.4 / 72).toFixed(3);
+  const groups = layers.map(() => ({strokes: [], shapes: [], pens: new Map()}));
+  const at = (x, y) => `${mm(x - x0)} ${mm(y - y0)}`;
   const add = (layer, pen, xs, ys, count) => {
-    const wide = fixed(Math.max(0.1, pen));
-    let d = "M";
-    for (let i = 0; i < count; i++) d += (i ? " " : "") + fixed(xs[i] * layer.magnification) + " " + fixed(ys[i] * layer.magnification);
-    if (!paths.has(wide)) paths.set(wide, []);
-    paths.get(wide).push(d);
+    const {strokes, pens} = groups[layers.indexOf(layer)], wide = +(Math.max(0.1, pen) * 25.4 / 72).toFixed(4), by = layer.magnification;
+    for (const points of cropped(xs, ys, count, by, pen / 2, [x0, y0, x1, y1])) {
+      const d = points.map(([x, y]) => at(x, y));
+      // a dot is a line of a micrometre: one without length is not drawn by all, and dropped by vpype
+      strokes.push([wide, d.every(p => p === d[0]) ? d[0] + "h.001" : d.filter((p, i) => p !== d[i - 1]).join(" ")]);
+      pens.set(wide, (pens.get(wide) || 0) + 1);
+    }
   };
-  draw(layers, width, height, window, gain,
-    (layer, screen, count) => add(layer, layer.pen * layer.magnification - gain * screen.widens, alongX, alongY, count),
-    (layer, xs, ys, pen) => add(layer, pen * layer.magnification - MEAN * gain, xs, ys, xs.length));
-  return [`<svg xmlns="http://www.w3.org/2000/svg" width="${fixed(x1 - x0)}pt" height="${fixed(y1 - y0)}pt" viewBox="${fixed(x0)} ${fixed(y0)} ${fixed(x1 - x0)} ${fixed(y1 - y0)}">`,
-    `<clipPath id="frame"><rect width="${fixed(width)}" height="${fixed(height)}"/></clipPath><g clip-path="url(#frame)" fill="none" stroke="#000" stroke-linecap="round" stroke-linejoin="round">`,
-    ...Array.from(paths, ([wide, list]) => `<path stroke-width="${wide}" d="${list.join("")}"/>`)].join("\n") + "</g></svg>\n";
+  draw(layers, width, height, window, gain, 1,
+    (layer, screen, count, pressure) => add(layer, pressure * layer.pen * layer.magnification - gain * screen.widens, alongX, alongY, count),
+    (layer, xs, ys, pen) => add(layer, pen * layer.magnification - MEAN * gain, xs, ys, xs.length),
+    (layer, xs, ys) => {
+      const shape = clipped(xs, ys, [x0, y0, x1, y1]);
+      if (shape.length > 2) groups[layers.indexOf(layer)].shapes.push(shape.map(([x, y]) => at(x, y)).join(" "));
+    });
+  const wide = mm(x1 - x0), tall = mm(y1 - y0);
+  return `<svg xmlns="http://www.w3.org/2000/svg" xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape" version="1.1" width="${wide}mm" height="${tall}mm" viewBox="0 0 ${wide} ${tall}">\n` +
+    groups.map(({strokes, shapes, pens}, i) => {
+      const ink = layers[i].ink || "#000000", usual = [...pens].reduce((a, b) => b[1] > a[1] ? b : a, [0.3, 0])[0];
+      return `<g id="layer${i + 1}" inkscape:groupmode="layer" inkscape:label="${i + 1}" fill="none" stroke="${ink}" stroke-width="${usual}" stroke-linecap="round" stroke-linejoin="round">\n` +
+        strokes.map(([pen, d]) => `<path d="M${d}"${pen === usual ? "" : ` stroke-width="${pen}"`}/>\n`).join("") +
+        (shapes.length ? `<g fill="${ink}" stroke="none">\n${shapes.map(d => `<path d="M${d}z"/>\n`).join("")}</g>\n` : "") + "</g>\n";
+    }).join("") + "</svg>\n";
+}
+
+// The parts of a polyline, `by` points a unit, that lie in a frame and no nearer than rim to its border.
+function cropped(xs, ys, count, by, rim, [left, top, right, bottom]) {
+  const rx = Math.min(rim, (right - left) / 2), ry = Math.min(rim, (bottom - top) / 2), out = [];
+  let run = null;
+  for (let i = 1; i < count; i++) {
+    const ax = xs[i - 1] * by, ay = ys[i - 1] * by, bx = xs[i] * by, by1 = ys[i] * by;
+    let from = 0, upto = 1;
+    for (const [a, step, least, most] of [[ax, bx - ax, left + rx, right - rx], [ay, by1 - ay, top + ry, bottom - ry]]) {
+      if (!step) { if (a < least || a > most) upto = -1; continue; }
+      const enters = (least - a) / step, leaves = (most - a) / step;
+      from = Math.max(from, Math.min(enters, leaves));
+      upto = Math.min(upto, Math.max(enters, leaves));
+    }
+    if (from > upto) { run = null; continue; }
+    const point = t => [ax + t * (bx - ax), ay + t * (by1 - ay)];
+    if (!run || from > 0) out.push(run = [point(from)]);
+    run.push(point(upto));
+    if (upto < 1) run = null;
+  }
+  return out;
+}
+// The part of a shape that lies in a frame, side by side (Sutherland and Hodgman 1974).
+function clipped(xs, ys, [left, top, right, bottom]) {
+  let shape = Array.from(xs, (x, i) => [x, ys[i]]);
+  for (const [axis, limit, way] of [[0, left, 1], [0, right, -1], [1, top, 1], [1, bottom, -1]]) {
+    const inside = p => way * (p[axis] - limit) >= 0;
+    if (shape.every(inside)) continue;
+    shape = shape.flatMap((p, i) => {
+      const q = shape[i ? i - 1 : shape.length - 1], t = (limit - q[axis]) / (p[axis] - q[axis]);
+      const cross = inside(p) === inside(q) ? [] : [[q[0] + t * (p[0] - q[0]), q[1] + t * (p[1] - q[1])]];
+      return inside(p) ? [...cross, p] : cross;
+    });
+  }
+  return shape;
 }
 
 // What is seen, in points: a unit of the screen's texture is a point.
@@ -86,7 +145,8 @@ function save() {
   link.click();
   setTimeout(() => URL.revokeObjectURL(link.href), 1000);
 }
-// On paper the whole picture, at its natural size, as lines: the printer draws them at its own resolution.
+// On paper the whole picture, at its natural size or as large as the sheet has room for, as lines: the printer draws them at
+// its own resolution.
 function beforePrint() { document.querySelector("#paper").innerHTML = svg(size[0], [0, 0, ...size], PRINTER); }
 function afterPrint() { document.querySelector("#paper").replaceChildren(); }
 

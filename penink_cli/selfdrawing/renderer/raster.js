@@ -41,8 +41,42 @@ class Raster {
     }
   }
 
+  // A shape with corners at xs, ys, `by` pixels a unit from (x, y). How much of each pixel it covers is summed up, so shapes
+  // side by side add up; what a side of it covers is kept where it is crossed, and what is right of it follows when it is shown.
+  fill(xs, ys, by, x, y) {
+    this.sums ||= new Float32Array((this.wide + 2) * this.tall);
+    let area = 0;
+    for (let i = 0, j = xs.length - 1; i < xs.length; j = i++) area += xs[j] * ys[i] - xs[i] * ys[j];
+    const way = area < 0 ? -1 : 1;
+    for (let i = 0, j = xs.length - 1; i < xs.length; j = i++) this.side(xs[j] * by + x, ys[j] * by + y, xs[i] * by + x, ys[i] * by + y, way);
+  }
+  side(ax, ay, bx, by, way) {
+    if (ay === by) return;
+    if (ay > by) { [ax, ay, bx, by] = [bx, by, ax, ay]; way = -way; }
+    const {sums, wide, tall} = this, slope = (bx - ax) / (by - ay);
+    for (let j = Math.max(0, Math.floor(ay)), last = Math.min(tall, by); j < last; j++) {
+      const top = Math.max(j, ay), bottom = Math.min(j + 1, by), high = way * (bottom - top);
+      if (bottom <= top) continue;
+      let x0 = clamp(ax + (top - ay) * slope, 0, wide), x1 = clamp(ax + (bottom - ay) * slope, 0, wide);
+      if (x0 > x1) [x0, x1] = [x1, x0];
+      // what is right of the side between column 0 and x, of a strip as high as it is here
+      const right = x => x <= x0 ? 0 : x >= x1 ? x - (x0 + x1) / 2 : (x - x0) * (x - x0) / (2 * (x1 - x0));
+      for (let i = Math.floor(x0), k = j * (wide + 2) + i, upto = Math.floor(x1) + 1, before = 0, last = 0; i <= upto; i++, k++) {
+        const now = right(i + 1);
+        sums[k] -= high * (now - last - before);
+        before = now - last;
+        last = now;
+      }
+    }
+  }
+
   // Onto the pixels of an image.
   show(image) {
+    if (this.sums) for (let j = this.top; j < this.bottom; j++)
+      for (let i = 0, sum = 0, from = j * (this.wide + 2); i < this.right; i++) {
+        sum += this.sums[from + i];
+        this.light[j * this.wide + i] *= 1 - clamp(sum, 0, 1);
+      }
     const out = new Int32Array(image.data.buffer), {light, wide, left, right} = this;
     out.fill(0);
     for (let j = this.top; j < this.bottom; j++)

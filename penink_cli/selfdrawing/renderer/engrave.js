@@ -1,0 +1,147 @@
+// engrave.js - lines evenly far apart whose width is the tone (penink_cli/blasting/engraving.py says why; engrave.ps has the
+// same straight lines and rings).
+
+// The middle lines of an engraving where the window needs them: {xs, ys, wide}, wide being how far lines are from one another
+// there, in parts of the spacing.
+function tracksOf(sheet, every) {
+  const {layer, width, height, blocks, unit} = sheet, {engraving, field} = layer, out = [];
+  const spacing = engraving.lines ? width / engraving.lines : engraving.spacing;
+  if (field) {
+    const density = new Float32Array(sheet.tone.length).fill(1 / spacing);
+    for (const [xs, ys] of linesAlong(sheet, 0, 0, density, null, every, wallsOf(sheet), Math.max(spacing, 3))) out.push({xs, ys});
+    return {tracks: out, spacing};
+  }
+  const left = blocks.x0 / unit - 2, top = blocks.y0 / unit - 2, right = blocks.x1 / unit + 2, bottom = blocks.y1 / unit + 2;
+  if (engraving.centre) {
+    const cx = engraving.centre[0] * width, cy = engraving.centre[1] * height, nearX = clamp(cx, left, right), nearY = clamp(cy, top, bottom);
+    const near = far(nearX - cx, nearY - cy), farthest = Math.max(...[left, right].map(x => Math.max(far(x - cx, top - cy), far(x - cx, bottom - cy))));
+    // the angles at which the window is seen from the centre
+    let from = 0, upto = 2 * Math.PI;
+    if (near > 0) {
+      const middle = Math.atan2((top + bottom) / 2 - cy, (left + right) / 2 - cx);
+      const off = [[left, top], [right, top], [left, bottom], [right, bottom]].map(([x, y]) => { const a = Math.atan2(y - cy, x - cx) - middle; return a - 2 * Math.PI * Math.round(a / 2 / Math.PI); });
+      from = middle + Math.min(...off);
+      upto = middle + Math.max(...off);
+    }
+    for (let k = Math.max(0, Math.ceil(near / spacing - 1)); (k + 0.5) * spacing < farthest + spacing; k++) {
+      const radius = (k + 0.5) * spacing, per = 2 * Math.PI / Math.max(8, Math.ceil(2 * Math.PI * radius)), xs = [], ys = [];
+      for (let i = Math.floor(from / per); i <= Math.ceil(upto / per); i++) { xs.push(cx + radius * Math.cos(i * per)); ys.push(cy + radius * Math.sin(i * per)); }
+      out.push({xs, ys});
+    }
+    return {tracks: out, spacing};
+  }
+  const c = Math.cos(engraving.angle * Math.PI / 180), s = Math.sin(engraving.angle * Math.PI / 180), us = [], vs = [], {waver} = engraving, turn = 2 * Math.PI / GRAIN;
+  for (const [x, y] of [[left, top], [right, top], [left, bottom], [right, bottom]]) { us.push(x * c + y * s); vs.push(y * c - x * s); }
+  const away = waver * WAVER_PT + spacing;
+  for (let k = Math.floor((Math.min(...vs) - away) / spacing); k * spacing < Math.max(...vs) + away; k++) {
+    const xs = [], ys = [], wide = waver ? [] : null, v = (k + 0.5) * spacing;
+    for (let u = Math.floor(Math.min(...us)); u <= Math.max(...us) + 1; u++) {
+      let w = v;
+      if (waver) {
+        const a = turn * (u + v / WAVE[1]), b = turn * (WAVE[3] * u - v / WAVE[4]), by = waver * WAVER_PT;
+        w += by * (WAVE[0] * Math.sin(a) + WAVE[2] * Math.sin(b));
+        const along = by * turn * (WAVE[0] * Math.cos(a) + WAVE[2] * WAVE[3] * Math.cos(b));
+        wide.push((1 + by * turn * (WAVE[0] * Math.cos(a) / WAVE[1] - WAVE[2] * Math.cos(b) / WAVE[4])) / Math.sqrt(1 + along * along));
+      }
+      const x = u * c - w * s, y = u * s + w * c;
+      if (x < left || y < top || x > right || y > bottom) { if (wide) wide.pop(); if (xs.length) break; continue; }
+      xs.push(x);
+      ys.push(y);
+    }
+    if (xs.length > 1) out.push({xs, ys, wide});
+  }
+  return {tracks: out, spacing};
+}
+
+// Lines of a layer: fill(layer, xs, ys) with their outlines, in units; weighed first, and what they lack is added to the tone.
+function engrave(sheet, every, fill) {
+  const {layer, blocks, unit} = sheet, {tracks, spacing} = tracksOf(sheet, every), walls = wallsOf(sheet), per = unit / blocks.side, ink = new Float64Array(blocks.bare.length);
+  const weigh = (x, y, area) => {
+    const a = Math.floor(x * per) - blocks.left, b = Math.floor(y * per) - blocks.top;
+    if (x >= 0 && y >= 0 && x < sheet.width && y < sheet.height && a >= 0 && b >= 0 && a < blocks.across && b < blocks.down) ink[b * blocks.across + a] += area;
+  };
+  for (const track of tracks) cutAtWalls(sheet, track, walls);
+  for (const track of tracks) swell(sheet, track, spacing, weigh, null);
+  blocks.cover(ink.map(area => area * unit * unit));
+  sheet.correct();
+  for (const track of tracks) swell(sheet, track, spacing, null, (xs, ys) => fill(layer, xs, ys));
+}
+
+// Where walls cut a line between one point and the next, kept with it.
+function cutAtWalls(sheet, track, walls) {
+  const {xs, ys} = track;
+  track.cuts = new Float32Array(xs.length).fill(-1);
+  if (sheet.layer.picture.count) for (let i = 0; i + 1 < xs.length; i++) track.cuts[i] = wallBetween(sheet, walls, xs[i], ys[i], xs[i + 1], ys[i + 1]);
+  track.begin = chance(xs[0] * 7.3, ys[0] * 5.1);
+  track.walls = walls;
+}
+
+function swell(sheet, track, spacing, weigh, fill) {
+  const {cuts} = track, n = cuts.length;
+  for (let from = 0, upto; from < n; from = upto + 1) {
+    for (upto = from; upto + 1 < n && cuts[upto] < 0;) upto++;
+    stretch(sheet, track, spacing, from, upto, weigh, fill);
+  }
+}
+
+// The runs of a line between two walls.
+function stretch(sheet, track, spacing, from, upto, weigh, fill) {
+  const {tone, perX, perY, x0, y0, wide: across, tall, gain, layer: {engraving, pen}} = sheet, {xs, ys, cuts, wide} = track, many = upto - from + 1, n = xs.length;
+  if (many < 2) return;
+  const got = new Float64Array(many), widths = new Float64Array(many), drawn = new Uint8Array(many), added = gain * pen;
+  for (let i = 0; i < many; i++)
+    got[i] = tone[clamp(Math.floor(ys[from + i] * perY) - y0, 0, tall - 1) * across + clamp(Math.floor(xs[from + i] * perX) - x0, 0, across - 1)] / 255;
+  for (let round = 0; round < 2; round++) for (let i = 0, before = got[0]; i < many; i++) {
+    const here = got[i];
+    got[i] = (before + 2 * here + got[Math.min(i + 1, many - 1)]) / 4;
+    before = here;
+  }
+  let saw = track.begin;
+  for (let i = 0; i < many; i++) {
+    const k = Math.min(from + i, upto - 1), dx = xs[k + 1] - xs[k], dy = ys[k + 1] - ys[k], long = Math.max(1e-6, far(dx, dy)), share = wide ? wide[from + i] : 1, t = got[i];
+    const gained = added * EDGE * (Math.abs(dx) + Math.abs(dy)) / long, apart = spacing * share, finest = (engraving.finest + gained) / apart, duty = t / finest;
+    saw += long / clamp(DASH_PT / Math.max(duty, 1e-3), PERIOD_PT, LONGEST_PERIOD_PT);
+    drawn[i] = duty >= 1 || saw - Math.floor(saw) < duty && t > LEAST_TONE ? 1 : 0;
+    const width = clamp(t, finest, MOST_TONE) * apart - gained;
+    widths[i] = Math.max(0.02, width + clamp((t - MOST_TONE) / (1 - MOST_TONE), 0, 1) * (CLOSED * apart - width));
+  }
+  for (let a = 0, b; a < many; a = b + 1) {
+    if (!drawn[a]) { b = a; continue; }
+    for (b = a; b + 1 < many && drawn[b + 1];) b++;
+    // an end is bounded at a wall, at the frame, and where a ring closes; others are free and taper
+    const walledA = a === 0 && from > 0, walledB = b === many - 1 && cuts[upto] >= 0, long = b - a, ring = xs[0] === xs[n - 1] && ys[0] === ys[n - 1];
+    const bounded = k => ring || xs[k] < 1 || ys[k] < 1 || xs[k] > sheet.width - 1 || ys[k] > sheet.height - 1;
+    const freeA = a > 0 || !walledA && !bounded(from), freeB = b < many - 1 || !walledB && !bounded(upto);
+    if (long < 1 && !walledA && !walledB) continue;
+    const leftX = [], leftY = [], rightX = [], rightY = [], tapers = engraving.blunt ? 0 : long < 3 * DASH_PT ? DASH_TAPER * long : Math.min(TAPER_PT, TAPER_SHARE * long);
+    const even = long < 3 * DASH_PT && tapers ? 1 / (1 - DASH_TAPER) : 1;
+    for (let i = a; i <= b; i += i < b && i + 2 > b ? 1 : 2) {
+      const k = from + i, p = Math.max(from, k - 1), q = Math.min(upto, k + 1), dx = xs[q] - xs[p], dy = ys[q] - ys[p], d = Math.max(1e-6, far(dx, dy));
+      let w = widths[i] * (freeA && freeB ? even : 1);
+      if (tapers) {
+        const inward = Math.min(freeA ? (i - a) / tapers : 1, freeB ? (b - i) / tapers : 1);
+        const full = Math.max(inward, clamp((w / spacing - BLUNT) / (1 - BLUNT), 0, 1));
+        if (full < 1) w = Math.min(TIP_PT, w) * (1 - full) + w * full;
+      }
+      w /= 2;
+      leftX.push(xs[k] + dy / d * w); leftY.push(ys[k] - dx / d * w);
+      rightX.push(xs[k] - dy / d * w); rightY.push(ys[k] + dx / d * w);
+      if (weigh) weigh(xs[k], ys[k], (2 * w + added * EDGE * (Math.abs(dx) + Math.abs(dy)) / d) * (i < b ? i + 2 > b ? 1 : 2 : 0.5));
+    }
+    if (weigh || leftX.length < 1) continue;
+    // ends at walls are cut as the wall runs
+    const {walls} = track;
+    for (const [walled, end, cut] of [[walledA, a, cuts[from - 1]], [walledB, b, cuts[upto]]]) if (walled) {
+      const k = from + end, [k0, k1] = end === a && walledA ? [from - 1, from] : [upto, upto + 1], ux = xs[k1] - xs[k0], uy = ys[k1] - ys[k0];
+      const last = end === a && walledA ? 0 : leftX.length - 1, put = last ? "push" : "unshift", inwards = end === a && walledA ? 1 - cut : cut;
+      for (const [sx, sy] of [[leftX, leftY], [rightX, rightY]]) {
+        const x = sx[last], y = sy[last], way = end === a && walledA ? -1 : 1;
+        let t = wallBetween(sheet, walls, x, y, x + way * ux, y + way * uy);
+        if (t < 0) t = wallBetween(sheet, walls, x, y, x - way * ux, y - way * uy) >= 0 ? 0 : inwards;
+        sx[put](x + way * t * ux);
+        sy[put](y + way * t * uy);
+      }
+    }
+    fill(leftX.concat(rightX.reverse()), leftY.concat(rightY.reverse()));
+  }
+}
