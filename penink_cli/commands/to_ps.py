@@ -57,7 +57,8 @@ def to_ps(
 
     With --self the printer does the work: the small representation itself is written, and a program that draws it with
     fresh strokes for the size at which it is placed and the device's resolution. They are those of blast's rule
-    "threshold"; the layers' rules and seeds do not matter. For print shops, and for
+    "threshold", or lines that swell, straight or in rings, and the telling lines that there is room for; the layers'
+    directions, rules and seeds do not matter. For print shops, and for
     whatever converts PostScript to something else first, write strokes.
 
     \b
@@ -99,11 +100,18 @@ def _refuse_what_is_ignored(self_drawing: bool) -> None:
 
 def write_self_drawing(files: tuple[str, ...], output: str | None, packing: str, max_pixels: int) -> None:
     """The illustration in the one file given as an EPS that draws itself."""
+    from penink_cli.options.common import warn
     from penink_cli.options.inputs import read_illustration
     from penink_cli.selfdrawing import postscript as selfdrawing
+    from penink_cli.selfdrawing.data import follows
 
     if len(files) > 1:
         raise click.UsageError("--self takes one illustration")
-    program = selfdrawing.write(read_illustration(files[0] if files else None, max_pixels), packing)
+    illustration = read_illustration(files[0] if files else None, max_pixels)
+    program = selfdrawing.write(illustration, packing)
+    straight = [str(i) for i, layer in enumerate(illustration.layers, 1) if follows(layer)]
+    if straight:
+        which = f"layer {straight[0]} is" if len(straight) == 1 else f"layers {', '.join(straight)} are"
+        warn(f"{which} drawn straight: a printer has no time to follow directions")
     with writing(output) as out:
         out.write(program)

@@ -112,10 +112,17 @@ def _layer(layer: Layer, w: int, h: int, number: int, family: int) -> LayerData:
     )  # fmt: skip
 
 
+def follows(layer: Layer) -> bool:
+    """Whether the layer has directions, and strokes that would follow them."""
+    texture = layer.texture
+    kind = texture.engraving if layer.pen_pt is None else None
+    return layer.directions is not None and bool(kind.along if kind else texture.layers)
+
+
 def _field(layer: Layer) -> tuple[bytes, tuple[int, int]]:
     """Bytes and size of the directions, none where the texture's strokes do not follow any."""
     field = layer.directions
-    if field is None or not (layer.texture.engraving.along if layer.texture.engraving else layer.texture.layers):
+    if field is None or not follows(layer):
         return b"", (0, 0)
     h, w = field.cos2.shape
     reach = max(1, -(-max(w, h) // MOST_SAMPLES))

@@ -246,15 +246,18 @@ class Sheet {
     return answer;
   }
 
-  // What each block would lack, in 255ths, smoothed.
-  lacking() {
-    const {sum, wide, tall, blocks: {bare, across, down, left, top}} = this, lack = new Float64Array(across * down), cells = new Float64Array(across * down);
+  // What each block would lack, in 255ths, smoothed; with the ink of this layer still to come, which is as much as its tone.
+  lacking(toCome = false) {
+    const {sum, tone, wide, tall, blocks: {bare, across, down, left, top}} = this, lack = new Float64Array(across * down), cells = new Float64Array(across * down), own = this.own = new Float64Array(across * down);
     const {perX, perY} = this.blocksPerCell(), inX = Int32Array.from({length: wide}, (_, p) => clamp(Math.floor((this.x0 + p + 0.5) * perX) - left, 0, across - 1));
     for (let q = 0; q < tall; q++) {
       const row = clamp(Math.floor((this.y0 + q + 0.5) * perY) - top, 0, down - 1) * across;
-      for (let p = 0; p < wide; p++) { const k = row + inX[p]; lack[k] += sum[q * wide + p]; cells[k]++; }
+      for (let p = 0; p < wide; p++) { const k = row + inX[p]; lack[k] += sum[q * wide + p]; own[k] += tone[q * wide + p]; cells[k]++; }
     }
-    for (let k = 0; k < lack.length; k++) lack[k] = lack[k] / Math.max(1, cells[k]) - 255 * (1 - bare[k]);
+    for (let k = 0; k < lack.length; k++) {
+      own[k] = toCome ? own[k] / Math.max(1, cells[k]) / 255 : 0;
+      lack[k] = lack[k] / Math.max(1, cells[k]) - 255 * (1 - bare[k] * (1 - own[k]));
+    }
     const soften = (start, stride, length) => {
       let here = lack[start];
       for (let k = 0; k < length; k++) {
@@ -270,8 +273,8 @@ class Sheet {
   blocksPerCell() { return {perX: this.unit / this.perX / this.blocks.side, perY: this.unit / this.perY / this.blocks.side}; }
 
   // The feedback: what the first pass would lack is added to the tone.
-  correct() {
-    const {tone, wide, tall, blocks: {bare, across, down, left, top}} = this, lack = this.lacking(), {perX, perY} = this.blocksPerCell();
+  correct(lack = this.lacking()) {
+    const {tone, wide, tall, blocks: {bare, across, down, left, top}} = this, {perX, perY} = this.blocksPerCell();
     const taken = this.layer.screens[0].level ? 1 : TAKEN_UP;  // of textures that are not lines half of the lack is chance
     lack.forEach((more, k) => { lack[k] = more *= taken; bare[k] = clamp(bare[k] - more / 255, 0, 1); });
     const place = (k, per, first, count) => {

@@ -26,6 +26,7 @@ function tracksOf(sheet, every) {
     for (let k = Math.max(0, Math.ceil(near / spacing - 1)); (k + 0.5) * spacing < farthest + spacing; k++) {
       const radius = (k + 0.5) * spacing, per = 2 * Math.PI / Math.max(8, Math.ceil(2 * Math.PI * radius)), xs = [], ys = [];
       for (let i = Math.floor(from / per); i <= Math.ceil(upto / per); i++) { xs.push(cx + radius * Math.cos(i * per)); ys.push(cy + radius * Math.sin(i * per)); }
+      if (!near) { xs[xs.length - 1] = xs[0]; ys[ys.length - 1] = ys[0]; }
       out.push({xs, ys});
     }
     return {tracks: out, spacing};
@@ -53,18 +54,24 @@ function tracksOf(sheet, every) {
   return {tracks: out, spacing};
 }
 
-// Lines of a layer: fill(layer, xs, ys) with their outlines, in units; weighed first, and what they lack is added to the tone.
+// Lines of a layer: fill(layer, xs, ys) with their outlines, in units. They have the tone by themselves; where there is ink
+// besides, as much is taken from it.
 function engrave(sheet, every, fill) {
-  const {layer, blocks, unit} = sheet, {tracks, spacing} = tracksOf(sheet, every), walls = wallsOf(sheet), per = unit / blocks.side, ink = new Float64Array(blocks.bare.length);
-  const weigh = (x, y, area) => {
-    const a = Math.floor(x * per) - blocks.left, b = Math.floor(y * per) - blocks.top;
-    if (x >= 0 && y >= 0 && x < sheet.width && y < sheet.height && a >= 0 && b >= 0 && a < blocks.across && b < blocks.down) ink[b * blocks.across + a] += area;
-  };
-  for (const track of tracks) cutAtWalls(sheet, track, walls);
-  for (const track of tracks) swell(sheet, track, spacing, weigh, null);
-  blocks.cover(ink.map(area => area * unit * unit));
-  sheet.correct();
-  for (const track of tracks) swell(sheet, track, spacing, null, (xs, ys) => fill(layer, xs, ys));
+  const {layer, blocks} = sheet;
+  if (blocks.bare.some(part => part < 1)) {
+    const lack = sheet.lacking(true);
+    lack.forEach((more, k) => { blocks.bare[k] *= 1 - sheet.own[k]; });
+    sheet.correct(lack);
+  }
+  const {tracks, spacing} = tracksOf(sheet, every), walls = wallsOf(sheet);
+  for (const track of tracks) {
+    cutAtWalls(sheet, track, walls);
+    const {cuts} = track;
+    for (let from = 0, upto; from < cuts.length; from = upto + 1) {
+      for (upto = from; upto + 1 < cuts.length && cuts[upto] < 0;) upto++;
+      stretch(sheet, track, spacing, from, upto, (xs, ys) => fill(layer, xs, ys));
+    }
+  }
 }
 
 // Where walls cut a line between one point and the next, kept with it.
@@ -76,16 +83,8 @@ function cutAtWalls(sheet, track, walls) {
   track.walls = walls;
 }
 
-function swell(sheet, track, spacing, weigh, fill) {
-  const {cuts} = track, n = cuts.length;
-  for (let from = 0, upto; from < n; from = upto + 1) {
-    for (upto = from; upto + 1 < n && cuts[upto] < 0;) upto++;
-    stretch(sheet, track, spacing, from, upto, weigh, fill);
-  }
-}
-
 // The runs of a line between two walls.
-function stretch(sheet, track, spacing, from, upto, weigh, fill) {
+function stretch(sheet, track, spacing, from, upto, fill) {
   const {tone, perX, perY, x0, y0, wide: across, tall, gain, layer: {engraving, pen}} = sheet, {xs, ys, cuts, wide} = track, many = upto - from + 1, n = xs.length;
   if (many < 2) return;
   const got = new Float64Array(many), widths = new Float64Array(many), drawn = new Uint8Array(many), added = gain * pen;
@@ -109,26 +108,34 @@ function stretch(sheet, track, spacing, from, upto, weigh, fill) {
     if (!drawn[a]) { b = a; continue; }
     for (b = a; b + 1 < many && drawn[b + 1];) b++;
     // an end is bounded at a wall, at the frame, and where a ring closes; others are free and taper
-    const walledA = a === 0 && from > 0, walledB = b === many - 1 && cuts[upto] >= 0, long = b - a, ring = xs[0] === xs[n - 1] && ys[0] === ys[n - 1];
+    const walledA = a === 0 && from > 0, walledB = b === many - 1 && cuts[upto] >= 0, long = b - a + 1, ring = xs[0] === xs[n - 1] && ys[0] === ys[n - 1];
     const bounded = k => ring || xs[k] < 1 || ys[k] < 1 || xs[k] > sheet.width - 1 || ys[k] > sheet.height - 1;
     const freeA = a > 0 || !walledA && !bounded(from), freeB = b < many - 1 || !walledB && !bounded(upto);
-    if (long < 1 && !walledA && !walledB) continue;
-    const leftX = [], leftY = [], rightX = [], rightY = [], tapers = engraving.blunt ? 0 : long < 3 * DASH_PT ? DASH_TAPER * long : Math.min(TAPER_PT, TAPER_SHARE * long);
-    const even = long < 3 * DASH_PT && tapers ? 1 / (1 - DASH_TAPER) : 1;
+    const leftX = [], leftY = [], rightX = [], rightY = [], dash = !engraving.blunt && (freeA || freeB) && long < 3 * DASH_PT;
+    const tapers = engraving.blunt ? 0 : dash ? DASH_TAPER * long : Math.min(TAPER_PT, TAPER_SHARE * long), even = dash ? 1 / (1 - DASH_TAPER * (freeA + freeB) / 2) : 1;
+    const tip = (k, way, side, w) => {
+      const i = way < 0 ? Math.max(from, k - 1) : Math.min(upto, k + 1), ux = (xs[i] - xs[k]) / 2, uy = (ys[i] - ys[k]) / 2, d = Math.max(1e-6, far(ux, uy)) * way;
+      return i === k ? [xs[k], ys[k]] : [xs[k] + ux + side * uy / d * w, ys[k] + uy - side * ux / d * w];
+    };
     for (let i = a; i <= b; i += i < b && i + 2 > b ? 1 : 2) {
       const k = from + i, p = Math.max(from, k - 1), q = Math.min(upto, k + 1), dx = xs[q] - xs[p], dy = ys[q] - ys[p], d = Math.max(1e-6, far(dx, dy));
-      let w = widths[i] * (freeA && freeB ? even : 1);
+      let w = widths[i] * even;
       if (tapers) {
-        const inward = Math.min(freeA ? (i - a) / tapers : 1, freeB ? (b - i) / tapers : 1);
+        const inward = Math.min(freeA ? (i - a + 0.5) / tapers : 1, freeB ? (b - i + 0.5) / tapers : 1);
         const full = Math.max(inward, clamp((w / spacing - BLUNT) / (1 - BLUNT), 0, 1));
         if (full < 1) w = Math.min(TIP_PT, w) * (1 - full) + w * full;
       }
       w /= 2;
       leftX.push(xs[k] + dy / d * w); leftY.push(ys[k] - dx / d * w);
       rightX.push(xs[k] - dy / d * w); rightY.push(ys[k] + dx / d * w);
-      if (weigh) weigh(xs[k], ys[k], (2 * w + added * EDGE * (Math.abs(dx) + Math.abs(dy)) / d) * (i < b ? i + 2 > b ? 1 : 2 : 0.5));
     }
-    if (weigh || leftX.length < 1) continue;
+    for (const [free, k, way, last] of [[freeA, from + a, -1, 0], [freeB, from + b, 1, leftX.length - 1]]) if (free) {
+      const w = far(leftX[last] - xs[k], leftY[last] - ys[k]) * (engraving.blunt ? 1 : 0.5);
+      for (const [sx, sy, side] of [[leftX, leftY, 1], [rightX, rightY, -1]]) {
+        const [x, y] = tip(k, way, side, w);
+        if (way < 0) { sx.unshift(x); sy.unshift(y); } else { sx.push(x); sy.push(y); }
+      }
+    }
     // ends at walls are cut as the wall runs
     const {walls} = track;
     for (const [walled, end, cut] of [[walledA, a, cuts[from - 1]], [walledB, b, cuts[upto]]]) if (walled) {
