@@ -18,10 +18,13 @@ OTHERS: dict[str, Any] = {
     "MEAN": MEAN, "EDGE": EDGE, "T1": T1, "ANGLES": ANGLES,
     "LADDER": telling.LADDER, "LINE_STEP": 1.5, "LINE_FINEST": pressed.FINEST, "LINE_TAPER": pressed.TIP_PT,
     "LINE_TIP": pressed.TIP, "WHITE_PEN": beside.WHITE.pen_pt, "WHITE_FROM": beside.DARK, "WHITE_FULL": beside.FULL,
-    "MOST_TONE": engraving.MOST, "CLOSED": engraving.CLOSED, "DASH_PT": engraving.DASH_PT,
-    "PERIOD_PT": engraving.PERIOD_PT, "LONGEST_PERIOD_PT": engraving.LONGEST_PERIOD_PT,
+    "MOST_TONE": engraving.MOST, "CLOSED": engraving.CLOSED,
     "LEAST_TONE": engraving.LEAST_TONE, "TAPER_PT": engraving.TAPER_PT, "TAPER_SHARE": engraving.TAPER_SHARE,
     "TIP_PT": engraving.TIP_PT, "BLUNT": engraving.BLUNT, "WAVER_PT": engraving.WAVER_PT,
+    # dashes: least length, and the shortest and the longest stretch of line that holds one
+    "DASH_PT": 2.4, "PERIOD_PT": 6.0, "LONGEST_PERIOD_PT": 40.0,
+    # every second line leaves off between these tones, in parts of that of the finest lines
+    "LEAVES_OFF": (0.8, 1.6),
     # a dash is tapered over this part of its length at both ends; waver goes to and fro over so many points
     "DASH_TAPER": 0.25, "GRAIN": 4 * engraving.WAVER_LENGTH_PT,
     # tone steps by so many 255ths over an edge at which lines end

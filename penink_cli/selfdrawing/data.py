@@ -11,7 +11,17 @@ from penink_cli.blasting import screens
 from penink_cli.blasting.outlines import Run, runs
 from penink_cli.geometry.trails import trails
 from penink_cli.ground.errors import LimitError
-from penink_cli.ground.model import EdgeList, Engraving, Floats, GreyImage, HatchLayer, Illustration, Ints, Layer, LineChoice
+from penink_cli.ground.model import (
+    EdgeList,
+    Engraving,
+    Floats,
+    GreyImage,
+    HatchLayer,
+    Illustration,
+    Ints,
+    Layer,
+    LineChoice,
+)
 from penink_cli.selfdrawing import telling
 from penink_cli.selfdrawing.lattice import PARTS, on_lattice
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import io
+import re
 import subprocess
 from pathlib import Path
 from typing import Any
@@ -14,10 +15,12 @@ import pytest
 from PIL import Image
 from scipy.ndimage import gaussian_filter
 
-from penink_cli.selfdrawing import html, postscript
+from penink_cli.ground.model import Illustration
+from penink_cli.options.textures import find_texture
+from penink_cli.selfdrawing import html, packer, postscript
 from tests.selfdrawing.chromium import Page
 from tests.selfdrawing.crossings import crossings
-from tests.selfdrawing.pictures import expected_tone, ghostscript, illustration
+from tests.selfdrawing.pictures import CROSSHATCH, expected_tone, ghostscript, illustration, two_layers
 
 
 @pytest.fixture(scope="module")
@@ -187,6 +190,66 @@ def test_it_prints_strokes_at_the_printers_resolution(page, tmp_path):
     cut = paper[rows.min() : rows.max() + 1, columns.min() : columns.max() + 1]
     assert 1 - cut.mean() / 255 == pytest.approx(wanted, abs=0.02)
     assert page.evaluate("document.querySelector('#paper').children.length") == 0  # gone after it
+
+
+@pytest.mark.parametrize("sheet", [(8.27, 11.69), (8.5, 11)], ids=["A4", "Letter"])
+@pytest.mark.parametrize("shape", [(9, 16), (1, 1), (16, 9)], ids=str)
+def test_one_picture_is_printed_on_one_sheet(sheet, shape, tmp_path):
+    wide, tall = (72 * 1.2 * side for side in shape)  # larger than the sheet, one way or the other, but for the square
+    small = illustration()
+    path = tmp_path / "picture.html"
+    path.write_bytes(html.write(Illustration(wide, tall, small.layers), "picture"))
+    with Page(path, 300, 300) as opened:
+        made = opened.call("Page.printToPDF", paperWidth=sheet[0], paperHeight=sheet[1])["data"]
+    pdf = tmp_path / "page.pdf"
+    pdf.write_bytes(base64.b64decode(made))
+    facts = subprocess.run(["pdfinfo", pdf], capture_output=True, text=True, check=True).stdout
+    assert re.search(r"Pages: +1\n", facts)
+    subprocess.run(["gs", "-q", "-dBATCH", "-dNOPAUSE", "-r50", "-sDEVICE=pgmraw", f"-sOutputFile={tmp_path}/a.pgm", pdf],
+                   check=True)  # fmt: skip
+    rows, columns = np.nonzero(np.asarray(Image.open(tmp_path / "a.pgm")) < 128)
+    extent = np.ptp(columns) / np.ptp(rows)
+    assert extent == pytest.approx(shape[0] / shape[1], rel=0.03)  # all of it
+    room = min(72 * (sheet[0] - 0.9) / wide, 72 * (sheet[1] - 0.9) / tall, 1)
+    assert np.ptp(columns) == pytest.approx(50 / 72 * wide * room, rel=0.06)  # and no smaller than need be
+
+
+def test_every_dot_has_a_length_that_plotters_see(tmp_path):
+    dots = svg_of(illustration(texture=find_texture("stipple")), tmp_path, 108)
+    paths = re.findall(r'<path d="M([^"]*)"', dots)
+    assert len(paths) > 300 and all(d.endswith("h.001") or len(set(zip(*[iter(d.split())] * 2))) > 1 for d in paths)
+    assert sum(d.endswith("h.001") for d in paths) > 0.9 * len(paths)
+
+
+def test_layers_and_frame_of_what_is_saved(tmp_path):
+    saved = svg_of(two_layers(find_texture("stipple"), CROSSHATCH), tmp_path, 108)
+    root = ElementTree.fromstring(saved)
+    label = "{http://www.inkscape.org/namespaces/inkscape}label"
+    assert [group.attrib[label] for group in root] == ["1", "2"] and "clip" not in saved
+    assert root.attrib["width"] == "38.1mm" and root.attrib["viewBox"] == "0 0 38.1 38.1"
+    pens = {group.attrib["stroke-width"] for group in root}
+    for path in root.iter("{http://www.w3.org/2000/svg}path"):
+        half = float(path.attrib.get("stroke-width", max(pens, key=float))) / 2
+        at = np.array(path.attrib["d"][1:].replace("h.001", "").split(), float)
+        assert at.min() >= half - 0.02 and at.max() <= 38.1 - half + 0.02
+
+
+def svg_of(picture: Illustration, tmp_path: Path, width: float) -> str:
+    path = tmp_path / "picture.html"
+    path.write_bytes(html.write(picture, "picture"))
+    with Page(path, 300, 300) as opened:
+        return str(opened.evaluate(f"svg({width}, [0, 0, {width}, {width * picture.height / picture.width}], 0)"))
+
+
+def test_readers_without_scripts_are_told():
+    told = re.search(rb"<noscript>(.*?)</noscript>", html.write(illustration(), "x"), re.DOTALL)
+    assert told and b"scripts" in told[1]
+
+
+def test_no_name_is_declared_twice():
+    text = "\n".join(packer.source(name) for name in html.SOURCES)
+    names = re.findall(r"^(?:async )?(?:function|const|let|class) (\w+)", text, re.MULTILINE)
+    assert len(names) > 50 and len(names) == len(set(names))
 
 
 def test_it_saves_what_is_seen_as_svg(page, tmp_path):

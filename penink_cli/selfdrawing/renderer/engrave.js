@@ -7,8 +7,9 @@ function tracksOf(sheet, every) {
   const {layer, width, height, blocks, unit} = sheet, {engraving, field} = layer, out = [];
   const spacing = engraving.lines ? width / engraving.lines : engraving.spacing;
   if (field) {
-    const density = new Float32Array(sheet.tone.length).fill(1 / spacing);
-    for (const [xs, ys] of linesAlong(sheet, 0, 0, density, null, every, wallsOf(sheet), Math.max(spacing, 3))) out.push({xs, ys});
+    // every second line is one on which the phase is 0, the others are half way
+    const density = new Float32Array(sheet.tone.length).fill(1 / spacing / 2), walls = wallsOf(sheet);
+    linesAlong(sheet, 0, 0, density, null, every, walls, Math.max(spacing, 3), [0, 0.5]).forEach((lines, odd) => { for (const [xs, ys] of lines) out.push({xs, ys, odd}); });
     return {tracks: out, spacing};
   }
   const left = blocks.x0 / unit - 2, top = blocks.y0 / unit - 2, right = blocks.x1 / unit + 2, bottom = blocks.y1 / unit + 2;
@@ -27,7 +28,7 @@ function tracksOf(sheet, every) {
       const radius = (k + 0.5) * spacing, per = 2 * Math.PI / Math.max(8, Math.ceil(2 * Math.PI * radius)), xs = [], ys = [];
       for (let i = Math.floor(from / per); i <= Math.ceil(upto / per); i++) { xs.push(cx + radius * Math.cos(i * per)); ys.push(cy + radius * Math.sin(i * per)); }
       if (!near) { xs[xs.length - 1] = xs[0]; ys[ys.length - 1] = ys[0]; }
-      out.push({xs, ys});
+      out.push({xs, ys, odd: k & 1});
     }
     return {tracks: out, spacing};
   }
@@ -49,7 +50,7 @@ function tracksOf(sheet, every) {
       xs.push(x);
       ys.push(y);
     }
-    if (xs.length > 1) out.push({xs, ys, wide});
+    if (xs.length > 1) out.push({xs, ys, wide, odd: k & 1});
   }
   return {tracks: out, spacing};
 }
@@ -83,6 +84,12 @@ function cutAtWalls(sheet, track, walls) {
   track.walls = walls;
 }
 
+// The tone that a line makes of what it is asked: in light tones every second one leaves off, and the others do its part.
+function takenUp(t, finest, odd) {
+  const [none, all] = LEAVES_OFF, left = clamp((t - none * finest) * all / (all - none), 0, t);
+  return t >= all * finest ? t : odd ? left : 2 * t - left;
+}
+
 // The runs of a line between two walls.
 function stretch(sheet, track, spacing, from, upto, fill) {
   const {tone, perX, perY, x0, y0, wide: across, tall, gain, layer: {engraving, pen}} = sheet, {xs, ys, cuts, wide} = track, many = upto - from + 1, n = xs.length;
@@ -97,8 +104,8 @@ function stretch(sheet, track, spacing, from, upto, fill) {
   }
   let saw = track.begin;
   for (let i = 0; i < many; i++) {
-    const k = Math.min(from + i, upto - 1), dx = xs[k + 1] - xs[k], dy = ys[k + 1] - ys[k], long = Math.max(1e-6, far(dx, dy)), share = wide ? wide[from + i] : 1, t = got[i];
-    const gained = added * EDGE * (Math.abs(dx) + Math.abs(dy)) / long, apart = spacing * share, finest = (engraving.finest + gained) / apart, duty = t / finest;
+    const k = Math.min(from + i, upto - 1), dx = xs[k + 1] - xs[k], dy = ys[k + 1] - ys[k], long = Math.max(1e-6, far(dx, dy)), share = wide ? wide[from + i] : 1;
+    const gained = added * EDGE * (Math.abs(dx) + Math.abs(dy)) / long, apart = spacing * share, finest = (engraving.finest + gained) / apart, t = takenUp(got[i], finest, track.odd), duty = t / finest;
     saw += long / clamp(DASH_PT / Math.max(duty, 1e-3), PERIOD_PT, LONGEST_PERIOD_PT);
     drawn[i] = duty >= 1 || saw - Math.floor(saw) < duty && t > LEAST_TONE ? 1 : 0;
     const width = clamp(t, finest, MOST_TONE) * apart - gained;

@@ -115,9 +115,9 @@ function weakOf(sheet, {i0, j0, every, columns, rows}, walls) {
   return weak;
 }
 
-// Lines of that density (a unit) along the field: [xs, ys] each, in steps of about a unit. What is known of the phase from
+// Lines of that density (a unit) along the field, for each level of the phase: [xs, ys] each, in steps of about a unit. What is known of the phase from
 // before is kept, as long as the picture is as large.
-function linesAlong(sheet, number, turn, density, wanted, every, walls, spacing) {
+function linesAlong(sheet, number, turn, density, wanted, every, walls, spacing, levels = [0]) {
   const grid = nodesOf(sheet, every), [nx, ny] = normalsOf(sheet, grid, turn), dense = pick(sheet, grid, density), {layer, n, m} = sheet;
   if (!layer.phases || layer.phases.n !== n || layer.phases.m !== m) layer.phases = {n, m, known: []};
   const psi = phaseOf(grid, nx, ny, dense, weakOf(sheet, grid, walls), layer.phases.known[number]);
@@ -127,8 +127,8 @@ function linesAlong(sheet, number, turn, density, wanted, every, walls, spacing)
     psi, i0, j0, every, columns, left: i0 > every ? rim : 0, top: j0 > every ? rim : 0,
     right: i0 + columns * every < n ? columns - rim : columns, bottom: j0 + rows * every < m ? rows - rim : rows,
   };
-  const lines = levelLines(grid, psi, nx, ny, dense, wanted ? pick(sheet, grid, wanted) : new Uint8Array(psi.length).fill(1));
-  return evened(lines, clamp(Math.round(LINE_SMOOTHING * spacing * spacing), 2, 40), 2);
+  const there = wanted ? pick(sheet, grid, wanted) : new Uint8Array(psi.length).fill(1), rounds = clamp(Math.round(LINE_SMOOTHING * spacing * spacing), 2, 40);
+  return levels.map(level => evened(levelLines(grid, psi, nx, ny, dense, there, level), rounds, 2));
 }
 
 // A number 0 .. 1 that depends on a place alone.
@@ -215,7 +215,7 @@ function follow(sheet, every, stroke) {
     const density = carriedOn(cover.map(c => c / pen), cover, wide, 2);
     const near = boxMean(cover.map(c => c > RAGGED[0] ? 1 : 0), wide, 3);
     const cell = (x, y) => clamp(Math.floor(y * perY) - y0, 0, tall - 1) * wide + clamp(Math.floor(x * perX) - x0, 0, wide - 1), at = (x, y) => cover[cell(x, y)];
-    for (const [xs, ys] of linesAlong(sheet, number, layer.form[number][0], density, near, every, walls, 3)) {
+    for (const [xs, ys] of linesAlong(sheet, number, layer.form[number][0], density, near, every, walls, 3)[0]) {
       const n = xs.length, due = chance(xs[n >> 1], ys[n >> 1]), enough = RAGGED[0] + (RAGGED[1] - RAGGED[0]) * due;
       let points = [];
       const end = () => {

@@ -132,11 +132,11 @@ function phaseOf(grid, nx, ny, density, weak, before) {
   return psi;
 }
 
-// Level lines as polylines {xs, ys, first, ring}: where the phase is 0. A quad is two triangles; each node has the links to
+// Level lines as polylines {xs, ys, first, ring}: where the phase is `level`, 0 or 1/2. A quad is two triangles; each node has the links to
 // its right, downwards and across. Lines end at triangles around which the changes do not add up, and where nothing is wanted.
-function levelLines({columns, rows, left, top, dx, dy}, psi, nx, ny, density, wanted) {
+function levelLines({columns, rows, left, top, dx, dy}, psi, nx, ny, density, wanted, level) {
   const nodes = columns * rows, phase = new Float32Array(nodes), change = new Float32Array(3 * nodes), sign = new Int8Array(3 * nodes), begin = new Int32Array(3 * nodes + 1);
-  for (let p = 0; p < nodes; p++) phase[p] = Math.atan2(psi[2 * p + 1], psi[2 * p]) / (2 * Math.PI);
+  for (let p = 0; p < nodes; p++) phase[p] = Math.atan2(psi[2 * p + 1], psi[2 * p]) / (2 * Math.PI) - level;
   let total = 0;
   const rx = new Float32Array(nodes), ry = new Float32Array(nodes);
   for (let p = 0; p < nodes; p++) { rx[p] = density[p] * nx[p] * dx / 2; ry[p] = density[p] * ny[p] * dy / 2; }
@@ -145,7 +145,7 @@ function levelLines({columns, rows, left, top, dx, dy}, psi, nx, ny, density, wa
     begin[l] = total;
     if (k !== 1 && i + 1 >= columns || k && j + 1 >= rows || !wanted[p] && !wanted[q]) continue;
     const s = nx[p] * nx[q] + ny[p] * ny[q] < 0 ? -1 : 1, predicted = (k !== 1 ? rx[p] + s * rx[q] : 0) + (k ? ry[p] + s * ry[q] : 0);
-    const off = s * phase[q] - phase[p] - predicted;
+    const off = s * (phase[q] + level) - phase[p] - level - predicted;
     sign[l] = s;
     change[l] = predicted + off - Math.floor(off + 0.5);
     total += Math.abs(Math.floor(phase[p] + change[l]) - Math.floor(phase[p]));
