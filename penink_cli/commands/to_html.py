@@ -24,7 +24,8 @@ def to_html(
     FILE is an illustration, packed (*.penink) or loose. The page holds its small representation and a program that
     draws it with fresh strokes at every magnification; it needs no server and fetches nothing. The wheel, two
     fingers or + and - zoom, the arrows move. The strokes are those of blast's rule "threshold", or follow the layer's
-    directions, or swell as an engraving's, with the telling lines that there is room for; rules and seeds do not matter.
+    directions, or swell as an engraving's, with the telling lines that there is room for; rules and seeds do not
+    matter.
 
     \b
     penink to-html keys.penink -o keys.html

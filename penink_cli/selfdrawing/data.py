@@ -10,13 +10,13 @@ import numpy as np
 from penink_cli.blasting import screens
 from penink_cli.blasting.outlines import Run, runs
 from penink_cli.geometry.trails import trails
+from penink_cli.ground.angles import direction
 from penink_cli.ground.errors import LimitError
 from penink_cli.ground.model import (
     EdgeList,
     Engraving,
     Floats,
     GreyImage,
-    HatchLayer,
     Illustration,
     Ints,
     Layer,
@@ -34,6 +34,27 @@ MOST_POINTS = 40000
 ANGLES = 48
 
 
+@dataclass(frozen=True)
+class FieldData:
+    """Directions: a byte a sample, coded as grey is, in angles of ANGLES a half turn."""
+
+    width: int
+    height: int
+    angles: bytes
+
+
+@dataclass(frozen=True)
+class LineData:
+    """Telling lines, the dark ones first (see `telling`), on a grid of across × down places, and how they are drawn."""
+
+    choice: LineChoice
+    dark: int = 0
+    white: int = 0
+    across: int = 0
+    down: int = 0
+    lines: bytes = b""
+
+
 @dataclass(frozen=True, eq=False)
 class LayerData:
     """One layer.
@@ -43,10 +64,9 @@ class LayerData:
     chains, outlined, vertices, ends: how many chains, how many of them (the first) are outlined, vertices, edges.
     outline_pt: pen of the outlines. gamma: of the tone curve. table: of the texture.
     family: the number of the first layer with the same texture and pen, whose strokes lie in the same places.
-    field: a byte a sample, coded as the samples are, of the directions, in angles of ANGLES a half turn; field_size: how
-    many there are across and down, none where there are no directions.
-    hatch: the texture's layers; turns: degrees of each from the field. engraving: lines that swell, instead of the screens.
-    lines: bytes of the telling lines, `dark` and then `white` of them, on a grid of line_grid. line: how they are drawn.
+    form: of each of the texture's layers of hatching the degrees from a field, and the tones where it begins and ends.
+    field: the directions, None where there are none that the strokes follow. engraving: lines that swell, instead of
+    the table's screens. told: the telling lines.
     """
 
     width: int
@@ -62,16 +82,10 @@ class LayerData:
     gamma: float
     table: screens.ThresholdTable
     family: int
-    field: bytes
-    field_size: tuple[int, int]
-    hatch: tuple[HatchLayer, ...]
-    turns: tuple[float, ...]
+    form: tuple[tuple[float, float, float], ...]
+    field: FieldData | None
     engraving: Engraving | None
-    lines: bytes
-    dark: int
-    white: int
-    line_grid: tuple[int, int]
-    line: LineChoice
+    told: LineData
 
 
 def layers(illustration: Illustration) -> list[LayerData]:
@@ -118,7 +132,7 @@ def _layer(layer: Layer, w: int, h: int, number: int, family: int) -> LayerData:
         w, h, layer.levels, samples_bytes(ink_levels(layer), layer.levels), b"".join(chains),
         len(chains), outlined, len(np.unique(ends)), len(ends),
         layer.outline.pen_pt if layer.outline else 0.0, layer.gamma, screens.table(layer.texture, layer.pen_pt),
-        family, *_field(layer), *_engraved(layer), *_told(layer), layer.line,
+        family, _form(layer), _field(layer), layer.texture.engraving if layer.pen_pt is None else None, _told(layer),
     )  # fmt: skip
 
 
@@ -129,34 +143,35 @@ def follows(layer: Layer) -> bool:
     return layer.directions is not None and bool(kind.along if kind else texture.layers)
 
 
-def _field(layer: Layer) -> tuple[bytes, tuple[int, int]]:
-    """Bytes and size of the directions, none where the texture's strokes do not follow any."""
+def _form(layer: Layer) -> tuple[tuple[float, float, float], ...]:
+    hatch = layer.texture.layers
+    return tuple((one.angle - hatch[0].angle if one.turn is None else one.turn, one.low, one.high) for one in hatch)
+
+
+def _field(layer: Layer) -> FieldData | None:
+    """The directions, none where the texture's strokes do not follow any."""
     field = layer.directions
     if field is None or not follows(layer):
-        return b"", (0, 0)
-    h, w = field.cos2.shape
-    reach = max(1, -(-max(w, h) // MOST_SAMPLES))
-    cos2, sin2 = field.cos2[::reach, ::reach], field.sin2[::reach, ::reach]  # a few more than are of use
-    turn = np.array([(math.cos(2 * math.pi * k / ANGLES), math.sin(2 * math.pi * k / ANGLES)) for k in range(ANGLES)])
-    angle = np.array([np.argmax(np.multiply.outer(c, turn[:, 0]) + np.multiply.outer(s, turn[:, 1]), axis=1)
-                      for c, s in zip(cos2, sin2, strict=True)])  # fmt: skip
-    return samples_bytes(angle.astype(np.int64), ANGLES), (angle.shape[1], angle.shape[0])
+        return None
+    reach = -(-max(field.cos2.shape) // MOST_SAMPLES)
+    cos2, sin2 = field.cos2[::reach, ::reach], field.sin2[::reach, ::reach]  # more are of no use
+    turn = np.array([direction(360.0 * k / ANGLES) for k in range(ANGLES)])
+    angles = np.empty(cos2.shape, np.int64)
+    for i, (c, s) in enumerate(zip(cos2, sin2, strict=True)):
+        angles[i] = np.argmax(np.outer(c, turn[:, 0]) + np.outer(s, turn[:, 1]), axis=1)
+    return FieldData(angles.shape[1], angles.shape[0], samples_bytes(angles, ANGLES))
 
 
-def _engraved(layer: Layer) -> tuple[tuple[HatchLayer, ...], tuple[float, ...], Engraving | None]:
-    hatch = layer.texture.layers
-    turns = tuple(one.angle - hatch[0].angle if one.turn is None else one.turn for one in hatch)
-    return hatch, turns, layer.texture.engraving if layer.pen_pt is None else None
-
-
-def _told(layer: Layer) -> tuple[bytes, int, int, tuple[int, int]]:
+def _told(layer: Layer) -> LineData:
     if layer.lines is None or not len(layer.lines):
-        return b"", 0, 0, (0, 0)
+        return LineData(layer.line)
     which, steps = telling.told(layer.lines, layer.line)
-    white = int(np.count_nonzero(layer.lines.white[which]))
     if int(np.diff(layer.lines.first)[which].sum()) > MOST_POINTS:
         raise LimitError(f"telling lines of more than {MOST_POINTS} points in an illustration that draws itself")
-    return telling.line_bytes(layer.lines, which, steps), len(which) - white, white, telling.grid(layer.lines)
+    white = int(np.count_nonzero(layer.lines.white[which]))
+    across, down = telling.grid(layer.lines)
+    drawn = telling.line_bytes(layer.lines, which, steps)
+    return LineData(layer.line, len(which) - white, white, across, down, drawn)
 
 
 def ink_levels(layer: Layer) -> Ints:

@@ -25,10 +25,7 @@ SOURCES = (
 def write(illustration: Illustration, title: str, readable: bool = False, reload: bool = False) -> bytes:
     """The page. readable: with the program's comments, not packed. reload: it follows its file."""
     parts = layers(illustration)
-    data = b"".join(
-        part.samples + part.edges + b"".join(tile_bytes(s) for s in part.table.screens if is_sent(s))
-        + part.field + part.lines for part in parts
-    )
+    data = b"".join(map(_bytes, parts))
     program = "\n".join(packer.source(name) for name in SOURCES)
     call = f"start({_number(illustration.width)},{_number(illustration.height)},{_layers(parts)},"
     if readable:
@@ -52,6 +49,12 @@ def write(illustration: Illustration, title: str, readable: bool = False, reload
     return page.encode("utf-8")
 
 
+def _bytes(layer: LayerData) -> bytes:
+    tiles = [tile_bytes(s) for s in layer.table.screens if is_sent(s)]
+    field = layer.field.angles if layer.field else b""
+    return b"".join([layer.samples, layer.edges, *tiles, field, layer.told.lines])
+
+
 def _quoted(data: bytes) -> str:
     packed = packer.deflate(data)
     return f'"{packer.letters(packed)}",{len(packed)}'
@@ -62,6 +65,7 @@ def _layers(parts: list[LayerData]) -> str:
 
 
 def _description(layer: LayerData) -> dict[str, Any]:
+    told = layer.told
     return {
         "w": layer.width,
         "h": layer.height,
@@ -71,13 +75,13 @@ def _description(layer: LayerData) -> dict[str, Any]:
         "outlinePen": layer.outline_pt,
         "gamma": layer.gamma,
         "family": layer.family,
-        "field": layer.field_size,
-        "form": [[turn, one.low, one.high] for turn, one in zip(layer.turns, layer.hatch, strict=True)],
+        "field": [layer.field.width, layer.field.height] if layer.field else [0, 0],
+        "form": layer.form,
         "engraving": _engraving(layer.engraving),
-        "told": [layer.dark, layer.white],
-        "lineGrid": layer.line_grid,
-        "linePen": layer.line.pen_pt,
-        "lineEven": layer.line.even,
+        "told": [told.dark, told.white],
+        "lineGrid": [told.across, told.down],
+        "linePen": told.choice.pen_pt,
+        "lineEven": told.choice.even,
         "pen": round(layer.table.pen_pt, 4),
         "magnification": round(layer.table.magnification, 4),
         "screens": [_screen(s, layer.table.whole) for s in layer.table.screens],

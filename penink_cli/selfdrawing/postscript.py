@@ -60,15 +60,16 @@ def write(illustration: Illustration, packing: str = "flate") -> bytes:
 
 def _bytes(layer: LayerData) -> bytes:
     tiles = [tile_bytes(s) for s in layer.table.screens if is_sent(s)]
-    return layer.samples + layer.edges + b"".join(tiles) + layer.lines
+    return layer.samples + layer.edges + b"".join(tiles) + layer.told.lines
 
 
 def _read(layer: LayerData) -> str:
+    told = layer.told
     return (
         f"{layer.width} {layer.height} {layer.levels} GetSamples "
         f"{layer.chains} {layer.outlined} {layer.vertices} {layer.ends} GetEdges "
         + "".join(_tile(i, s, layer.table.whole) + " " for i, s in enumerate(layer.table.screens) if is_sent(s))
-        + f"{layer.dark} {layer.white} {layer.line_grid[0]} {layer.line_grid[1]} GetTold"
+        + f"{told.dark} {told.white} {told.across} {told.down} GetTold"
     )
 
 
@@ -81,7 +82,7 @@ def _closed(layer: LayerData) -> str:
     screens = " ".join(_screen(i, s) for i, s in enumerate(table.screens))
     return (
         f"/OutlinePen {_number(layer.outline_pt)} def /Gamma {_number(layer.gamma)} def /Family {layer.family} def\n"
-        f"/LinePen {_number(layer.line.pen_pt)} def /LineEven {'true' if layer.line.even else 'false'} def\n"
+        f"/LinePen {_number(layer.told.choice.pen_pt)} def /LineEven {_bool(layer.told.choice.even)} def\n"
         f"/engraving {_engraving(layer.engraving)} def\n"
         f"{_number(table.pen_pt)} {_number(table.magnification)} [ {screens} ] Layer\nend\n"
     )
@@ -92,8 +93,12 @@ def _engraving(kind: Engraving | None) -> str:
         return "null"
     middle = "null null" if kind.centre is None else " ".join(map(_number, kind.centre))
     spacing = -kind.lines if kind.lines else kind.spacing_pt
-    blunt = "true" if kind.blunt else "false"
-    return f"[ {_number(spacing)} {_number(kind.finest_pt)} {_number(kind.angle)} {middle} {_number(kind.waver)} {blunt} ]"
+    numbers = " ".join(map(_number, (spacing, kind.finest_pt, kind.angle)))
+    return f"[ {numbers} {middle} {_number(kind.waver)} {_bool(kind.blunt)} ]"
+
+
+def _bool(value: bool) -> str:
+    return "true" if value else "false"
 
 
 def _screen(number: int, screen: Screen) -> str:

@@ -15,7 +15,7 @@ from penink_cli.blasting.telling import WHITE
 from penink_cli.ground.model import Floats, Ints, LineChoice, Lines
 from penink_cli.lines.choice import chosen
 
-#: Widths of the picture on paper, points, at which it is asked: half an inch to 22 inches. With more room no line is left.
+#: Widths of the picture on paper, points, at which it is asked: half an inch to 22 inches. With more room none is left.
 LADDER = tuple(round(36 * 2 ** (k / 2), 3) for k in range(12))
 #: Places are whole numbers, so many to the root of the frame's area, as in archives; none may be above MOST.
 SIDE, MOST = 1280, 65000
@@ -73,7 +73,7 @@ def line_bytes(lines: Lines, which: Ints, steps: Ints) -> bytes:
 def _path(points: Floats, weight: Floats) -> tuple[Ints, Ints]:
     """Places (k, 2) along a path, no two alike in a row and none too far from the last, and the weight at each."""
     legs = points[1:] - points[:-1]
-    parts = np.maximum(np.ceil(np.abs(legs).max(axis=1) / LONGEST), 1).astype(np.int64) if len(legs) else np.zeros(0, int)
+    parts = np.maximum(np.ceil(np.abs(legs).max(axis=1, initial=0) / LONGEST), 1).astype(np.int64)
     leg = np.repeat(np.arange(len(parts)), parts)
     part = ((np.arange(len(leg)) - np.repeat(np.cumsum(parts) - parts, parts)) / parts[leg])[:, None]
     dense = np.concatenate([points[leg] + legs[leg] * part, points[-1:]])

@@ -205,8 +205,8 @@ def test_one_picture_is_printed_on_one_sheet(sheet, shape, tmp_path):
     pdf.write_bytes(base64.b64decode(made))
     facts = subprocess.run(["pdfinfo", pdf], capture_output=True, text=True, check=True).stdout
     assert re.search(r"Pages: +1\n", facts)
-    subprocess.run(["gs", "-q", "-dBATCH", "-dNOPAUSE", "-r50", "-sDEVICE=pgmraw", f"-sOutputFile={tmp_path}/a.pgm", pdf],
-                   check=True)  # fmt: skip
+    gs = ["gs", "-q", "-dBATCH", "-dNOPAUSE", "-r50", "-sDEVICE=pgmraw"]
+    subprocess.run([*gs, f"-sOutputFile={tmp_path}/a.pgm", pdf], check=True)
     rows, columns = np.nonzero(np.asarray(Image.open(tmp_path / "a.pgm")) < 128)
     extent = np.ptp(columns) / np.ptp(rows)
     assert extent == pytest.approx(shape[0] / shape[1], rel=0.03)  # all of it

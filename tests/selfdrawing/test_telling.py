@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -34,12 +35,13 @@ def some_lines(n: int = 60, seed: int = 5) -> Lines:
     breadth[3] = 9.0
     first = np.concatenate([[0], np.cumsum(sizes)])
     white = np.arange(n) % 5 == 4
-    return Lines(400, 300, np.concatenate(points), first, np.concatenate(weight), rng.uniform(0.6, 8, n), white, breadth)
+    rank = rng.uniform(0.6, 8, n)
+    return Lines(400, 300, np.concatenate(points), first, np.concatenate(weight), rank, white, breadth)
 
 
-def drawing(lines: Lines | None, tone: float = 0.0, line: LineChoice = LineChoice()) -> Illustration:
+def drawing(lines: Lines | None, tone: float = 0.0, line: LineChoice | None = None) -> Illustration:
     samples = GreyImage(np.full((30, 40), round(63 * (1 - tone)), np.uint8), 63)
-    layer = Layer(samples, None, find_texture("engraving-straight"), lines=lines, line=line)
+    layer = Layer(samples, None, find_texture("engraving-straight"), lines=lines, line=line or LineChoice())
     return Illustration(288, 216, (layer,))
 
 
@@ -63,7 +65,7 @@ def along(lines: list[np.ndarray]) -> np.ndarray:
     """Points a third of a point apart on polylines."""
     dense = []
     for line in lines:
-        for a, b in zip(line[:-1], line[1:], strict=True):
+        for a, b in pairwise(line):
             n = max(1, int(np.hypot(*(b - a)) * 3))
             dense.append(a + (b - a) * (np.arange(n + 1) / n)[:, None])
     return np.concatenate(dense)
@@ -128,10 +130,11 @@ def test_steps_too_long_for_a_byte_are_taken_in_parts():
 
 def test_hostile_lines_are_drawn(tmp_path):
     same = np.array([[3.0, 3.0]] * 4)
-    lines = Lines(7, 7, np.concatenate([same, [[0.0, 0.0], [7.0, 7.0]], [[3.5, 3.5]]]), np.array([0, 4, 6, 7]),
-                  np.zeros(7), np.array([5.0, 4.0, 3.0]), np.array([False, False, False]), np.array([0.0, 0.0, 900.0]))  # fmt: skip
+    points = np.concatenate([same, [[0.0, 0.0], [7.0, 7.0]], [[3.5, 3.5]]])
+    rank, breadth = np.array([5.0, 4.0, 3.0]), np.array([0.0, 0.0, 900.0])
+    lines = Lines(7, 7, points, np.array([0, 4, 6, 7]), np.zeros(7), rank, np.zeros(3, bool), breadth)
     picture = drawing(lines, 0.4)
     assert ghostscript(postscript.write(picture), "-sDEVICE=pbmraw", "-r300", "-sOutputFile=/dev/null") == b""
     assert "NaN" not in page_svg(picture, tmp_path, 288)
     (none,) = data.layers(drawing(replace(lines, rank=np.zeros(3), white=np.ones(3, bool))))
-    assert none.dark == 0 and none.white == 0
+    assert none.told.dark == 0 and none.told.white == 0
