@@ -156,10 +156,11 @@ def _field(layer: Layer) -> FieldData | None:
     reach = -(-max(field.cos2.shape) // MOST_SAMPLES)
     cos2, sin2 = field.cos2[::reach, ::reach], field.sin2[::reach, ::reach]  # more are of no use
     turn = np.array([direction(360.0 * k / ANGLES) for k in range(ANGLES)])
-    angles = np.empty(cos2.shape, np.int64)
+    h, w = cos2.shape
+    angles = np.empty((h, w), np.int64)
     for i, (c, s) in enumerate(zip(cos2, sin2, strict=True)):
         angles[i] = np.argmax(np.outer(c, turn[:, 0]) + np.outer(s, turn[:, 1]), axis=1)
-    return FieldData(angles.shape[1], angles.shape[0], samples_bytes(angles, ANGLES))
+    return FieldData(w, h, samples_bytes(angles, ANGLES))
 
 
 def _told(layer: Layer) -> LineData:

@@ -1,12 +1,13 @@
 """Illustrations that draw themselves: bytes, tone at many sizes and devices, seconds, memory.
 
-Run as ``python -m tests.benchmarks.selfdrawing [PART]...``; parts are size, grid, tone, poster, textures, places,
-latex, page, refusals. Bundled photographs at 96 samples across, 64 levels; tone by a low-pass of sigma 1/16 inch;
-Ghostscript's seconds are CPU time.
+Run as ``python -m tests.benchmarks.selfdrawing [PART]...``; parts are size, grid, tone, poster, textures, engraving,
+places, latex, page, field, refusals. Bundled photographs at 96 samples across, 64 levels; tone by a low-pass of sigma
+1/16 inch; Ghostscript's seconds are CPU time.
 """
 
 from __future__ import annotations
 
+import io
 import shutil
 import statistics
 import subprocess
@@ -24,7 +25,7 @@ from skimage import data as pictures
 
 from penink_cli.arrangement.detection import detect_edges
 from penink_cli.ground.errors import LimitError
-from penink_cli.ground.model import GreyImage, Illustration, Layer
+from penink_cli.ground.model import Directions, GreyImage, Illustration, Layer
 from penink_cli.options.textures import find_texture
 from penink_cli.reconstruction import extraction, reduction
 from penink_cli.reconstruction.enlarge import enlarge
@@ -142,6 +143,49 @@ def textures(folder: Path) -> None:
     for texture in ("parallel", "crosshatch4", "grain", "stipple", "scribble", "brick", "grass"):
         for photo in ("camera", "coins", "moon"):
             row(photo, 4, 600, folder, texture)
+
+
+def engraving(folder: Path) -> None:
+    """Lines that swell, straight and in rings: tone, and CPU seconds a square inch (at most 0.12)."""
+    print(HEAD)
+    for texture in ("crosshatch", "engraving-straight", "contour-rings", "wood"):
+        for photo in ("camera", "coins"):
+            row(photo, 4, 600, folder, texture)
+    row("camera", 4, 1200, folder, "engraving-straight")
+    row("camera", 2, 300, folder, "engraving-straight")
+
+
+def rings(n: int = 96) -> Directions:
+    """A field of circles about the middle."""
+    y, x = (np.mgrid[:n, :n] + 0.5) / n - 0.5
+    double = 2 * np.arctan2(y, x) + np.pi
+    return Directions(np.cos(double), np.sin(double), np.ones((n, n)))
+
+
+def field(folder: Path) -> None:
+    """Pages that follow a field of circles, and pages that engrave: tone of what they save, processor of a repaint."""
+    print("  texture, photo: tone RMS %, bias % at 4 in; ms of processor, 1024 x 1024: the same view in haste, fully,")
+    print("  and another zoom fully; KB of SVG")
+    for texture in ("engraving-straight", "contour-rings", "engraving", "form", "crosshatch"):
+        along = texture in ("engraving", "form")
+        for photo in ("camera", "coins"):
+            p = picture(photo, texture=texture)
+            p = replace(p, layers=(replace(p.layers[0], directions=rings() if along else None),))
+            path = folder / "page.html"
+            path.write_bytes(html.write(p, photo))
+            with Page(path) as shown:
+                spent = []
+                for call in ("repaint(2)", "repaint()", "(view.zoom = 1.3, repaint())"):
+                    before = shown.processor_ms()
+                    shown.evaluate(call)
+                    spent.append(f"{shown.processor_ms() - before:.0f}")
+                saved = shown.evaluate(f"svg(288, [0, 0, 288, {p.height}], 0)")
+            (folder / "a.svg").write_text(saved)
+            convert = ["rsvg-convert", "-d", "600", "-p", "600", "--background-color=white", str(folder / "a.svg")]
+            out = subprocess.run(convert, check=True, capture_output=True).stdout
+            rms, bias = tone(np.asarray(Image.open(io.BytesIO(out)).convert("L")) / 255, p.layers[0], 4)
+            print(f"  {texture}{' along circles' if along else ''}, {photo}: {rms:.2f} {bias:+.2f};"
+                  f" {', '.join(spent)}; {len(saved) // 1024}", flush=True)  # fmt: skip
 
 
 def places(folder: Path) -> None:
@@ -268,8 +312,8 @@ def refusals(folder: Path) -> None:
 
 
 PARTS: dict[str, Callable[[Path], None]] = {
-    "size": size, "grid": grid, "tone": printouts, "poster": poster, "textures": textures, "places": places,
-    "latex": latex, "page": page, "refusals": refusals,
+    "size": size, "grid": grid, "tone": printouts, "poster": poster, "textures": textures,
+    "engraving": engraving, "places": places, "latex": latex, "page": page, "field": field, "refusals": refusals,
 }  # fmt: skip
 
 
