@@ -46,7 +46,7 @@ def picture(name: str, n: int = 96, texture: str = "crosshatch", **options: floa
     h = round(n * grey.shape[0] / grey.shape[1])
     samples = reduction.reduce(extraction.extract_samples(grey, edges), edges, n, h)
     values = np.rint(np.clip(samples, 0, 1) * 63).astype(np.uint8)
-    layer = Layer(GreyImage(values, 63), edges, find_texture(texture))
+    layer = Layer(GreyImage(values, 63), edges, find_texture(texture), levels=64)
     return Illustration(288.0, 288.0 * h / n, (layer,))
 
 

@@ -39,7 +39,7 @@ def illustration(n: int = 40, inches: float = 1.5, texture: Texture = CROSSHATCH
     vertices = np.vstack([ring, crease]) * 640
     edges = [(i, (i + 1) % 24) for i in range(24)] + [(24 + i, 25 + i) for i in range(4)]
     samples = GreyImage(np.rint((1 - tone) * 63).astype(np.uint8), 63)
-    layer = Layer(samples, EdgeList(640, 640, vertices, np.array(edges)), texture, outline=outline)
+    layer = Layer(samples, EdgeList(640, 640, vertices, np.array(edges)), texture, levels=64, outline=outline)
     return Illustration(72 * inches, 72 * inches, (layer,))
 
 
@@ -52,7 +52,7 @@ def two_layers(below: Texture, above: Texture, inches: float = 1.5) -> Illustrat
     corners = np.array([(0.25, 0.25), (0.75, 0.25), (0.75, 0.75), (0.25, 0.75)]) * 640
     edges = EdgeList(640, 640, corners, np.array([(0, 1), (1, 2), (2, 3), (3, 0)]))
     grey = [GreyImage(np.rint((1 - tone) * 63).astype(np.uint8), 63) for tone in (ramp, np.where(square, 0.35, 0.0))]
-    layers = (Layer(grey[0], None, below), Layer(grey[1], edges, above))
+    layers = (Layer(grey[0], None, below, levels=64), Layer(grey[1], edges, above, levels=64))
     return Illustration(72 * inches, 72 * inches, layers)
 
 

@@ -55,7 +55,7 @@ def on_a_page(picture: Illustration, width: float, tmp_path) -> Pieces:
         found = page.evaluate(f"""(() => {{
           const out = [];
           const keep = (layer, xs, ys, pen) => out.push([pen, xs, ys]);
-          draw(layers, {width}, {width}, [0, 0, {width}, {width}], 0, () => 0, keep);
+          draw(layers, {width}, {width}, [0, 0, {width}, {width}], 0, 1, () => 0, keep);
           return out;
         }})()""")
     return [(pen - WIDENED, np.column_stack([xs, ys])) for pen, xs, ys in found]

@@ -41,7 +41,7 @@ def some_lines(n: int = 60, seed: int = 5) -> Lines:
 
 def drawing(lines: Lines | None, tone: float = 0.0, line: LineChoice | None = None) -> Illustration:
     samples = GreyImage(np.full((30, 40), round(63 * (1 - tone)), np.uint8), 63)
-    layer = Layer(samples, None, find_texture("engraving-straight"), lines=lines, line=line or LineChoice())
+    layer = Layer(samples, None, find_texture("engraving-straight"), levels=64, lines=lines, line=line or LineChoice())
     return Illustration(288, 216, (layer,))
 
 
