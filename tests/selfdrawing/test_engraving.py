@@ -38,7 +38,8 @@ def test_a_finer_distance_is_told_apart(tmp_path):
 
 def flat(tone: float, texture: str, field: Directions | None = None, inches: float = 2.0) -> Illustration:
     samples = GreyImage(np.full((24, 24), round((1 - tone) * 63), np.uint8), 63)
-    return Illustration(72 * inches, 72 * inches, (Layer(samples, None, find_texture(texture), levels=64, directions=field),))
+    layer = Layer(samples, None, find_texture(texture), levels=64, directions=field)
+    return Illustration(72 * inches, 72 * inches, (layer,))
 
 
 def around(n: int = 48) -> Directions:
