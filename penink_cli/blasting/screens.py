@@ -86,6 +86,11 @@ class Screen:
     again: float | None = None
 
     @property
+    def control(self) -> Floats:
+        """(s, 4, 2) the control points of each stroke."""
+        return np.ascontiguousarray(self.points.reshape(-1, 4, 2))
+
+    @property
     def fresh_of_each(self) -> Floats:
         """(s,) the fresh ink of a point of each stroke, square points."""
         low = self.again if self.again is not None else self.layer.low if self.layer else 0.0

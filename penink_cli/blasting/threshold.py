@@ -17,7 +17,7 @@ import numpy.typing as npt
 
 from penink_cli.blasting import curves
 from penink_cli.blasting._compiled import threshold as _threshold
-from penink_cli.blasting.constants import BLOCK, DEEP, GAP, LEAST_PIXELS, PIXEL, SHORT, TAKEN_UP, WIDENED
+from penink_cli.blasting.constants import BLOCK, LEAST_PIXELS, PIXEL, TAKEN_UP, WIDENED
 from penink_cli.blasting.screens import Screen, ThresholdTable, table
 from penink_cli.blasting.sheet import resample
 from penink_cli.geometry import edge_index
@@ -242,31 +242,25 @@ def draw(
     w, h, block = sheet.width_pt / unit, sheet.height_pt / unit, sheet.side_pt / unit
     columns, rows = samples[0] + 1, samples[1] + 1
     first, items = buckets(ends, columns, rows)
-    ax, ay, bx, by = (np.ascontiguousarray(ends[:, i], np.float64) if len(ends) else np.zeros(1) for i in range(4))
+    near = _threshold.Edges(np.ascontiguousarray(ends, np.float64).reshape(-1, 4), first, items, columns, rows)
     wanted = tone
     for painting in (False, True):
         parts = []
         for screen in table.screens:
-            c, s = direction(screen.angle)
-            control = np.ascontiguousarray(screen.points.reshape(-1, 4, 2))
             copies = _copies(screen, w, h)
             ink = np.zeros_like(sheet.bare)
             room = 1 << 20
             while True:
-                points, ends_of, count = np.zeros((room, 2)), np.zeros(room // 2, np.int64), np.zeros(2, np.int64)
                 ink[:] = 0
-                if _threshold.runs(
-                    wanted, w, h, control, screen.enters * 255, screen.fresh_of_each, screen.line, table.way,
-                    screen.level, c, s, screen.width, screen.height, screen.wave, screen.turn, copies,
-                    columns, rows, ax, ay, bx, by, first, items,
-                    table.pen_pt, gain_pt / unit / table.pen_pt, table.whole,
-                    GAP, SHORT, DEEP, block, ink, points, ends_of, count,
-                ):  # fmt: skip
+                blocks = _threshold.Blocks(ink, w, h, block, gain_pt / unit / table.pen_pt)
+                runs = _threshold.Runs(np.zeros((room, 2)), np.zeros(room // 2, np.int64))
+                if _threshold.runs(wanted, screen, table, copies, near, blocks, runs):
                     break
                 room *= 4
             if not painting:
                 sheet.bare *= 1 - np.minimum(ink * unit * unit / sheet.area, 1.0)
-            parts.append((points[: count[0]] * unit, ends_of[: count[1]]))
+            points, stops = np.asarray(runs.points), np.asarray(runs.ends)
+            parts.append((points[: runs.points_used] * unit, stops[: runs.runs_used]))
         if not painting:
             wanted = corrected(tone, total, sheet, 1.0 if table.screens[0].layer else TAKEN_UP)
     return parts

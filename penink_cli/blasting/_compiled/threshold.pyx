@@ -8,14 +8,22 @@ from libc.math cimport ceil, floor, sqrt
 from penink_cli.ground._compiled.real cimport sine_of
 
 from penink_cli.blasting import constants
+from penink_cli.ground.angles import direction
 
 cdef double WAY_STEPS = constants.WAY_STEPS
 cdef double GIVE = constants.GIVE
 cdef double SAMPLE = constants.SAMPLE
 cdef double STEEP = constants.STEEP
 cdef double EARLY = constants.EARLY
+cdef int GAP = constants.GAP
+cdef double SHORT = constants.SHORT
+cdef double DEEP = constants.DEEP
 cdef double[6] WAVER = constants.WAVER
 cdef double[5] WAVE = constants.WAVE
+
+
+cdef enum:
+    MOST = 4096  # samples of a stroke, with room for one beyond its end
 
 
 cdef inline int _cell(double x, double scale, int n) noexcept nogil:
@@ -25,65 +33,189 @@ cdef inline int _cell(double x, double scale, int n) noexcept nogil:
     return n - 1 if i >= n else i
 
 
-cdef double _edge_between(
-    double x0, double y0, double x1, double y1, double[::1] ax, double[::1] ay, double[::1] bx, double[::1] by,
-    int[::1] first, int[::1] items, int columns, int rows, double near,
-) noexcept nogil:
-    """Where an edge crosses the segment, 0 … 1 along it, the crossing nearest to `near`; else -1. Sample units."""
-    cdef int i, j, k
-    cdef double best = 9.0, answer = -1.0
-    cdef int i0 = <int>floor(min(x0, x1)) + 1
-    cdef int i1 = <int>floor(max(x0, x1)) + 1
-    cdef int j0 = <int>floor(min(y0, y1)) + 1
-    cdef int j1 = <int>floor(max(y0, y1)) + 1
-    for j in range(max(j0, 0), min(j1, rows - 1) + 1):
-        for i in range(max(i0, 0), min(i1, columns - 1) + 1):
-            for k in range(first[j * columns + i], first[j * columns + i + 1]):
-                e = items[k]
-                p = (bx[e] - ax[e]) * (y0 - ay[e]) - (by[e] - ay[e]) * (x0 - ax[e])
-                q = (bx[e] - ax[e]) * (y1 - ay[e]) - (by[e] - ay[e]) * (x1 - ax[e])
-                if (p > 0) == (q > 0):
-                    continue
-                a = (x1 - x0) * (ay[e] - y0) - (y1 - y0) * (ax[e] - x0)
-                b = (x1 - x0) * (by[e] - y0) - (y1 - y0) * (bx[e] - x0)
-                if (a > 0) == (b > 0):
-                    continue
-                t = p / (p - q)
-                if abs(t - near) < best:
-                    best = abs(t - near)
-                    answer = t
-    return answer
+cdef class Edges:
+    """The edges that runs end at, in sample units, and the squares that they are in.
+
+    ends: (e, 4) ax ay bx by. first, items: those in square c, of columns × rows, are items[first[c] : first[c + 1]].
+    """
+
+    cdef double[:, ::1] ends
+    cdef int[::1] first, items
+    cdef int columns, rows
+
+    def __init__(self, double[:, ::1] ends, int[::1] first, int[::1] items, int columns, int rows) -> None:
+        self.ends = ends
+        self.first = first
+        self.items = items
+        self.columns = columns
+        self.rows = rows
+
+    cdef double between(self, double x0, double y0, double x1, double y1) noexcept nogil:
+        """Where an edge crosses the segment, 0 … 1 along it, the crossing nearest to its middle; else -1."""
+        cdef int i, j, k, e
+        cdef double best = 9.0, answer = -1.0
+        cdef int i0 = <int>floor(min(x0, x1)) + 1
+        cdef int i1 = <int>floor(max(x0, x1)) + 1
+        cdef int j0 = <int>floor(min(y0, y1)) + 1
+        cdef int j1 = <int>floor(max(y0, y1)) + 1
+        cdef double ax, ay, ex, ey, p, q, a, b, t
+        for j in range(max(j0, 0), min(j1, self.rows - 1) + 1):
+            for i in range(max(i0, 0), min(i1, self.columns - 1) + 1):
+                for k in range(self.first[j * self.columns + i], self.first[j * self.columns + i + 1]):
+                    e = self.items[k]
+                    ax = self.ends[e, 0]
+                    ay = self.ends[e, 1]
+                    ex = self.ends[e, 2]
+                    ey = self.ends[e, 3]
+                    p = (ex - ax) * (y0 - ay) - (ey - ay) * (x0 - ax)
+                    q = (ex - ax) * (y1 - ay) - (ey - ay) * (x1 - ax)
+                    if (p > 0) == (q > 0):
+                        continue
+                    a = (x1 - x0) * (ay - y0) - (y1 - y0) * (ax - x0)
+                    b = (x1 - x0) * (ey - y0) - (y1 - y0) * (ex - x0)
+                    if (a > 0) == (b > 0):
+                        continue
+                    t = p / (p - q)
+                    if abs(t - 0.5) < best:
+                        best = abs(t - 0.5)
+                        answer = t
+        return answer
 
 
-cpdef bint runs(
-    unsigned char[:, ::1] tone, double width, double height, double[:, :, ::1] control, double[::1] enters,
-    double[::1] fresh, int[::1] line, unsigned char[:, ::1] way, unsigned char[::1] level, double cosine, double sine,
-    double tile_u, double tile_v, double wave, double turn, int[:, ::1] copies, int columns, int rows, double[::1] ax,
-    double[::1] ay, double[::1] bx, double[::1] by, int[::1] first, int[::1] items, double pen, double gain, bint whole,
-    int gap, double short, double deep, double block, double[:, ::1] ink, double[:, ::1] points, long long[::1] ends,
-    long long[::1] size,
-):
+cdef class Stroke:
+    """The samples 0 … k of one copy of a stroke, `step` points apart: where they are, and by how much tone exceeds
+    the threshold there.
+    """
+
+    cdef double[MOST] excess, x, y
+    cdef int k
+    cdef double step
+
+    cdef double end(self, int at, int way, Edges edges, double gx, double gy, double pen) noexcept nogil:
+        """Where a run really ends whose last sample is `at` and whose next one, `at + way`, is off: in samples.
+
+        Exactly at an edge less half a pen where one is near, else where the tone reaches the threshold.
+        gx, gy: from points to sample units.
+        """
+        cdef int i, j
+        cdef int off = at + way
+        cdef double t
+        if self.excess[at] - self.excess[off] > STEEP:
+            i = max(0, min(self.k, at - way))
+            j = max(0, min(self.k, off + way))
+            t = edges.between(
+                self.x[i] * gx - 0.5, self.y[i] * gy - 0.5, self.x[j] * gx - 0.5, self.y[j] * gy - 0.5
+            )
+            if t >= 0:
+                return i + (j - i) * t - way * (pen / 2 / self.step)
+        return (
+            at + way * (self.excess[at] / (self.excess[at] - self.excess[off])) - way * (EARLY * pen / self.step)
+        )
+
+
+cdef class Blocks:
+    """The ink of what is drawn on a sheet of width × height points, in blocks of `side` points square.
+
+    gain: what of the pen's width the device adds to an upright or level stroke. It adds more to a slanting one: waves
+    come out darker where they are steep, and the feedback must know.
+    """
+
+    cdef double[:, ::1] ink
+    cdef double width, height, side, gain
+
+    def __init__(self, double[:, ::1] ink, double width, double height, double side, double gain) -> None:
+        self.ink = ink
+        self.width = width
+        self.height = height
+        self.side = side
+        self.gain = gain
+
+    cdef void count(self, Stroke stroke, int start, int last, double each, bint waves, double widens) noexcept nogil:
+        """Add a run's length to the blocks it passes: each of its samples' share, stretched as its piece is in waves.
+
+        widens: |cos| + |sin| of the direction that the pen is for.
+        """
+        cdef int j, i
+        cdef double share, dx, dy
+        for j in range(start, last + 1):
+            if 0 <= stroke.x[j] < self.width and 0 <= stroke.y[j] < self.height:
+                share = each
+                if waves:
+                    i = j if j < stroke.k else stroke.k - 1
+                    dx = stroke.x[i + 1] - stroke.x[i]
+                    dy = stroke.y[i + 1] - stroke.y[i]
+                    share *= (
+                        (1 - self.gain * widens) * sqrt(dx * dx + dy * dy) + self.gain * (abs(dx) + abs(dy))
+                    ) / stroke.step
+                self.ink[<int>(stroke.y[j] / self.side), <int>(stroke.x[j] / self.side)] += share
+
+
+cdef class Runs:
+    """Polylines: the first `points_used` of points (p, 2), and where each of the first `runs_used` ends."""
+
+    cdef readonly double[:, ::1] points
+    cdef readonly long long[::1] ends
+    cdef readonly long long points_used, runs_used
+
+    def __init__(self, double[:, ::1] points, long long[::1] ends) -> None:
+        self.points = points
+        self.ends = ends
+
+    cdef bint full(self, int k) noexcept nogil:
+        """Whether a stroke of k samples may find no room."""
+        return self.points_used + 2 * k + 8 > self.points.shape[0] or self.runs_used + k > self.ends.shape[0]
+
+    cdef void add(self, Stroke stroke, double ta, double tb, int every) noexcept nogil:
+        """Append the part of the samples from ta to tb: both ends and each `every`-th sample between."""
+        cdef int i = every * (<int>floor(ta / every) + 1)
+        self._point(stroke, ta)
+        while i < tb:
+            if i - ta > 0.5 and tb - i > 0.5:
+                self._point(stroke, i)
+            i += every
+        self._point(stroke, tb)
+        self.ends[self.runs_used] = self.points_used
+        self.runs_used += 1
+
+    cdef void _point(self, Stroke stroke, double t) noexcept nogil:
+        cdef int i = min(max(<int>floor(t), 0), stroke.k - 1)
+        cdef double f = t - i
+        self.points[self.points_used, 0] = stroke.x[i] + f * (stroke.x[i + 1] - stroke.x[i])
+        self.points[self.points_used, 1] = stroke.y[i] + f * (stroke.y[i + 1] - stroke.y[i])
+        self.points_used += 1
+
+
+def runs(
+    unsigned char[:, ::1] tone, screen, table, int[:, ::1] copies, Edges edges, Blocks blocks, Runs found
+) -> bool:
     """Append the runs of one screen as polylines; False where the room given does not suffice.
 
-    width, height: of the picture in points; tone (m, n) fills it.
-    control: (s, 4, 2) in the screen's u, v; enters: (s,) in 255ths; fresh: (s,) ink of a point of length;
-        line: (s,) the line it is part of, -1 for none.
-    way: (64, lines) how lines give way, 128 for not at all, in 24ths of a point; level: (256,) row of it for a tone.
-    wave, turn: lines wander sideways by about so much, turn radians a point.
+    tone: (m, n) in 255ths; it fills the sheet, which `blocks` knows and which what is drawn is added to.
+    screen, table: a `screens.Screen` of a `screens.ThresholdTable`, which tell what theirs are.
     copies: (c, 2) the tiles.
-    ax … items: edges in sample units and the squares (columns × rows) they are in.
-    pen: effective width; gain: what of it, of an upright stroke, the device adds. What is drawn is
-        added to ink, blocks of `block` points square.
-    points, ends: size[0] points of size[1] runs, each up to its end; size is brought up to date.
     """
-    cdef double[4096] d, px, py
+    cdef double[:, :, ::1] control = screen.control
+    cdef double[::1] enters = screen.enters * 255
+    cdef double[::1] fresh = screen.fresh_of_each
+    cdef int[::1] line = screen.line
+    cdef unsigned char[:, ::1] way = table.way
+    cdef unsigned char[::1] level = screen.level
+    cdef double cosine, sine
+    cosine, sine = direction(screen.angle)
+    cdef double tile_u = screen.width, tile_v = screen.height, wave = screen.wave, turn = screen.turn
+    cdef double pen = table.pen_pt
+    cdef bint whole = table.whole
+    cdef Stroke stroke = Stroke()
     cdef int s, c, i, k, start, last, got, every
+    cdef double u0, v0, u1, v1, u2, v2, u3, v3, length, step, limit, du, dv, mx, my, reach, total, aside, aim
+    cdef double t, u, v, x, y, ta, tb, each, peak
+    cdef double width = blocks.width, height = blocks.height
     cdef int n = tone.shape[1]
     cdef int m = tone.shape[0]
     cdef double sx = n / width
     cdef double sy = m / height
-    cdef double gx = (columns - 1) / width  # page to sample units, and half a sample
-    cdef double gy = (rows - 1) / height
+    cdef double gx = (edges.columns - 1) / width  # page to sample units, and half a sample
+    cdef double gy = (edges.rows - 1) / height
     for s in range(control.shape[0]):
         # coefficients of the cubic in u, v
         u0 = control[s, 0, 0]
@@ -100,6 +232,8 @@ cpdef bint runs(
         k = <int>ceil(length / SAMPLE)
         k = min(max(k, 1), 4094)
         step = length / k
+        stroke.k = k
+        stroke.step = step
         limit = enters[s]
         for c in range(copies.shape[0]):
             du = u0 + copies[c, 0] * tile_u
@@ -129,130 +263,48 @@ cpdef bint runs(
                         )
                 x = u * cosine - v * sine
                 y = u * sine + v * cosine
-                px[i] = x
-                py[i] = y
+                stroke.x[i] = x
+                stroke.y[i] = y
                 got = tone[_cell(y, sy, m), _cell(x, sx, n)]
-                d[i] = got - limit
-                total += d[i]
+                stroke.excess[i] = got - limit
+                total += stroke.excess[i]
                 if line[s] >= 0:
                     aim = (<int>way[level[got], line[s]] - 128) / WAY_STEPS
                     if i == 0:
                         aside = aim
-                        px[0] -= aside * sine
-                        py[0] += aside * cosine
-                    elif d[i] > 0:
+                        stroke.x[0] -= aside * sine
+                        stroke.y[0] += aside * cosine
+                    elif stroke.excess[i] > 0:
                         aside += GIVE * (aim - aside)
-            if size[0] + 2 * k + 8 > points.shape[0] or size[1] + k > ends.shape[0]:
+            if found.full(k):
                 return False
             every = 3 if line[s] >= 0 else 1
             if whole:
                 if total > 0:
-                    _polyline(0, k, k, every, px, py, points, ends, size)
-                    _count(
-                        0, k, fresh[s] * (length + 0.785 * pen) / (k + 1), 0.0, k, gain, 0.0, width, height,
-                        block, px, py, ink,
-                    )  # fmt: skip
+                    found.add(stroke, 0, k, every)
+                    blocks.count(stroke, 0, k, fresh[s] * (length + 0.785 * pen) / (k + 1), False, 0.0)
                 continue
             start = -1
             last = -1
             peak = 0.0
             for i in range(k + 2):
-                if i <= k and d[i] > 0:
+                if i <= k and stroke.excess[i] > 0:
                     if start < 0:
                         start = i
                         peak = 0.0
                     last = i
-                    peak = max(peak, d[i])
-                elif start >= 0 and (i > k or i - last > gap or d[i] < -deep):
-                    if last - start >= short or peak > deep or last - start == k:
+                    peak = max(peak, stroke.excess[i])
+                elif start >= 0 and (i > k or i - last > GAP or stroke.excess[i] < -DEEP):
+                    if last - start >= SHORT or peak > DEEP or last - start == k:
                         ta = <double>start
                         tb = <double>last
                         if start > 0:
-                            ta = _end(
-                                start, -1, k, step, d, px, py, gx, gy, ax, ay, bx, by, first, items, columns, rows, pen
-                            )
+                            ta = stroke.end(start, -1, edges, gx, gy, pen)
                         if last < k:
-                            tb = _end(
-                                last, 1, k, step, d, px, py, gx, gy, ax, ay, bx, by, first, items, columns, rows, pen
-                            )
+                            tb = stroke.end(last, 1, edges, gx, gy, pen)
                         if tb > ta:
-                            _polyline(ta, tb, k, every, px, py, points, ends, size)
+                            found.add(stroke, ta, tb, every)
                             each = fresh[s] * step * (tb - ta) / (last - start + 1)
-                            _count(
-                                start, last, each, step if wave > 0 else 0.0, k, gain, abs(cosine) + abs(sine),
-                                width, height, block, px, py, ink,
-                            )
+                            blocks.count(stroke, start, last, each, wave > 0, abs(cosine) + abs(sine))
                     start = -1
     return True
-
-
-cdef void _count(
-    int start, int last, double each, double step, int k, double gain, double widens, double width, double height,
-    double block, double* px, double* py, double[:, ::1] ink,
-) noexcept nogil:
-    """Add a run's length to the blocks it passes: each of its samples' share, stretched as its piece is if step > 0.
-
-    gain: what the device adds to an upright or level stroke, of its width. It adds more to a slanting one: waves
-    come out darker where they are steep, and the feedback must know.
-    widens: |cos| + |sin| of the direction that the pen is for.
-    """
-    cdef int j, i
-    cdef double share
-    for j in range(start, last + 1):
-        if 0 <= px[j] < width and 0 <= py[j] < height:
-            share = each
-            if step > 0:
-                i = j if j < k else k - 1
-                dx = px[i + 1] - px[i]
-                dy = py[i + 1] - py[i]
-                share *= ((1 - gain * widens) * sqrt(dx * dx + dy * dy) + gain * (abs(dx) + abs(dy))) / step
-            ink[<int>(py[j] / block), <int>(px[j] / block)] += share
-
-
-cdef void _polyline(
-    double ta, double tb, int k, int every, double* px, double* py, double[:, ::1] points, long long[::1] ends,
-    long long[::1] size,
-) noexcept nogil:
-    """Append the part of the samples from ta to tb: both ends and each `every`-th sample between."""
-    cdef long long at = size[0]
-    cdef int i = every * (<int>floor(ta / every) + 1)
-    _point(ta, k, px, py, points, at)
-    at += 1
-    while i < tb:
-        if i - ta > 0.5 and tb - i > 0.5:
-            _point(i, k, px, py, points, at)
-            at += 1
-        i += every
-    _point(tb, k, px, py, points, at)
-    size[0] = at + 1
-    ends[size[1]] = at + 1
-    size[1] += 1
-
-
-cdef void _point(double t, int k, double* px, double* py, double[:, ::1] points, long long at) noexcept nogil:
-    cdef int i = min(max(<int>floor(t), 0), k - 1)
-    f = t - i
-    points[at, 0] = px[i] + f * (px[i + 1] - px[i])
-    points[at, 1] = py[i] + f * (py[i + 1] - py[i])
-
-
-cdef double _end(
-    int at, int way, int k, double step, double* d, double* px, double* py, double gx, double gy, double[::1] ax,
-    double[::1] ay, double[::1] bx, double[::1] by, int[::1] first, int[::1] items, int columns, int rows, double pen,
-) noexcept nogil:
-    """Where a run really ends whose last sample is `at` and whose next one, `at + way`, is off: in samples.
-
-    Exactly at an edge less half a pen where one is near, else where the tone reaches the threshold.
-    """
-    cdef int i, j
-    cdef int off = at + way
-    if d[at] - d[off] > STEEP:
-        i = max(0, min(k, at - way))
-        j = max(0, min(k, off + way))
-        t = _edge_between(
-            px[i] * gx - 0.5, py[i] * gy - 0.5, px[j] * gx - 0.5, py[j] * gy - 0.5,
-            ax, ay, bx, by, first, items, columns, rows, <double>0.5,
-        )  # fmt: skip
-        if t >= 0:
-            return i + (j - i) * t - way * (pen / 2 / step)
-    return at + way * (d[at] / (d[at] - d[off])) - way * (EARLY * pen / step)
