@@ -193,19 +193,15 @@ class Sheet:
         belongs = np.full(n, np.inf) if enters is None else np.ascontiguousarray(enters)
         runs = np.full((n, most, 2), -1, np.int64)
         moved = np.zeros((n, 2))
-        moves = np.asarray(shifts, np.float64)
-        longest = int(np.diff(lines.first).max()) + 2 if n else 2
-        widths_sub = np.ascontiguousarray(widths * self.pitch)
+        against = _placing.Sheet(self.bits, self.residual, self.tone, self.weight, self.low_pass, self.gain)
+        tried = _placing.Candidates(points, lines.first, widths * self.pitch, walls, spacing, belongs)
+        terms = _placing.Terms(
+            whole, strict, cost, caution, lenience, shortest_pt * self.pitch, shortest_wall_pt * self.pitch,
+            np.asarray(shifts, np.float64),
+        )  # fmt: skip
 
         def run(order: Ints) -> None:
-            _placing.place(
-                self.bits, self.residual, self.tone, self.low_pass.kernel, self.low_pass.step, self.weight,
-                self.low_pass.profile,
-                points, lines.first, widths_sub, walls, order, self.gain, moves, spacing,
-                whole, strict, caution, lenience, belongs, cost,
-                shortest_pt * self.pitch, shortest_wall_pt * self.pitch,
-                runs, moved, np.empty((6, longest)), np.empty(longest, np.int64),
-            )  # fmt: skip
+            _placing.place(against, tried, terms, order, runs, moved)
 
         block = self._blocks(lines)
         for batch in batches:
