@@ -32,6 +32,7 @@ def blast(
     directions: Directions | None = None,
     lines: Lines | None = None,
     swell: float = 0.0,
+    natural_pt: float | None = None,
     threads: int | None = None,
     tick: Callable[[], None] = lambda: None,
 ) -> Strokes:
@@ -47,6 +48,7 @@ def blast(
     lines: telling lines of the picture: light ones are left out, and beside the dark ones, which are drawn already and
         among the outlines, hatching keeps clear.
     swell: how much strokes of a hatching or a set swell along their way where the tone does, see `pressure`.
+    natural_pt: width of the picture at which a texture that grows with it has its own size; None for what that says.
     tick: called now and then, `TICKS` times at the most.
 
     The width and density of strokes do not depend on the size of the sheet. Equal input gives equal strokes,
@@ -62,7 +64,7 @@ def blast(
         tone, told = telling.told(tone, width_pt, height_pt, lines, outlines, threads or 1)
     task = Task(
         tone, width_pt, height_pt, edges, texture, seed, pen_pt, device_dpi, outlines, directions, told, swell,
-        threads or 1, tick,
+        natural_pt, threads or 1, tick,
     )  # fmt: skip
     strokes: Strokes = chosen.draw(task)
     tick()

@@ -41,6 +41,7 @@ class Task:
     directions: Directions | None
     told: npt.NDArray[np.bool_] | None
     swell: float
+    natural_pt: float | None
     threads: int
     tick: Callable[[], None]
 

@@ -52,6 +52,7 @@ if TYPE_CHECKING:
     metavar="F",
     help="Draw with this part of the pens, lines so much closer.",
 )
+@click.option("--natural", type=LENGTH, help="Width at which a texture that grows has its size.  [default: it says]")
 @click.option("--gamma", type=Finite(0.05, 20), default=1.0, metavar="G", help="Tone curve: grey is raised to it.")
 @click.option(
     "--seed",
@@ -127,6 +128,7 @@ def blast(
     dpi: float | None,
     pen: float | None,
     finer: float,
+    natural: float | None,
     gamma: float,
     seed: int,
     device_dpi: float | None,
@@ -191,6 +193,7 @@ def blast(
             texture,
             seed=seed,
             pen_pt=pen,
+            natural_pt=natural,
             device_dpi=device_dpi,
             rule=rule,
             outlines=Strokes.joined(ink) if ink else None,

@@ -418,7 +418,11 @@ class _Drawing:
 
     def words(self, stage: str, filter_name: str) -> list[str]:
         """What the stage's options say to the filter."""
-        return words(stage, filter_name, self.stages.get(stage, {}))
+        options = self.stages.get(stage, {})
+        grows = filter_name == "blast" and find_texture(str(options.get("texture", "crosshatch"))).scales is not None
+        if grows and "natural" not in options:
+            options = {**options, "natural": self.width}
+        return words(stage, filter_name, options)
 
     def run(self, filter_name: str, words: list[str], wanted: str) -> str:
         """Run a filter whose result is handed on under that name, or one like it."""

@@ -22,7 +22,7 @@ import numpy as np
 from penink_cli.formats import strict_json
 from penink_cli.formats.strokes import LIMIT, Sink
 from penink_cli.ground.errors import FormatError
-from penink_cli.ground.model import Engraving, Floats, HatchLayer, Ints, Strokes, Texture
+from penink_cli.ground.model import Engraving, Floats, HatchLayer, Ints, Scales, Strokes, Texture
 
 MAX_BYTES = 64 << 20
 MAX_EXAMPLES = 1000  # of a set of oriented strokes
@@ -47,6 +47,9 @@ _ENGRAVING = {
     "waver": ("waver", 0.0, 10.0),
 }
 MOST_LINES = 100_000
+MOST_SCALE = 1000.0
+#: The hatchings that may fill a texture that grows.
+FILLS = ("parallel", "crosshatch")
 _NEEDED = ("angle", "from", "to", "pen")
 
 
@@ -76,6 +79,9 @@ def _texture(document: dict[str, Any]) -> Texture:
     if not items:
         raise FormatError("strokes is empty; a texture has at least one")
     priorities, widths, sizes, points = _strokes(items)
+    scales, spans = document.get("scales"), None
+    if scales is not None:
+        spans = _spans(items)
     order = np.argsort(priorities, kind="stable")
     first = np.zeros(len(items) + 1, np.int64)
     np.cumsum(sizes[order], out=first[1:])
@@ -86,7 +92,48 @@ def _texture(document: dict[str, Any]) -> Texture:
     found = tuple(_layer(layer, i) for i, layer in enumerate(layers))
     if oriented:
         _check_set(strokes, found)
-    return Texture(name, strokes, priorities[order], whole, found, _engraving(document.get("engraving")), oriented)
+    laid = Texture(name, strokes, priorities[order], whole, found, _engraving(document.get("engraving")), oriented)
+    return laid if spans is None else _scaling(laid, scales, spans[order])
+
+
+def _spans(items: list[Any]) -> Floats:
+    """(s, 2) from which scale to which each stroke is there; NaN for those that do not grow."""
+    spans = np.full((len(items), 2), np.nan)
+    for i, item in enumerate(items):
+        if "scale" not in item:
+            continue
+        place = f"stroke {i}: scale"
+        pair = strict_json.array(item["scale"], place)
+        if len(pair) != 2:
+            raise FormatError(f"{place} has {len(pair)} numbers; from and to are needed")
+        low, high = (strict_json.number(value, place, 0.0, MOST_SCALE) for value in pair)
+        if not low < high:
+            raise FormatError(f"{place} is from {low:g} to {high:g}; the first must be less")
+        spans[i] = low, high
+    return spans
+
+
+def _scaling(laid: Texture, scales: Any, spans: Floats) -> Texture:
+    """The texture that grows: `laid` holds all its strokes."""
+    if not isinstance(scales, dict):
+        raise FormatError(f"scales is {strict_json.quoted(scales)}; an object is needed")
+    if laid.layers or laid.engraving is not None or laid.oriented:
+        raise FormatError("scales go with a plain tile: no layers, no engraving, not oriented")
+    natural = _size(strict_json.member(scales, "natural", "scales"), "scales: natural")
+    least = strict_json.number(scales.get("least", 0.0), "scales: least", 0.0, LIMIT)
+    fill = strict_json.text(scales.get("fill", FILLS[0]), "scales: fill")
+    if fill not in FILLS:
+        raise FormatError(f"scales: fill {strict_json.quoted(fill)}; known are {', '.join(FILLS)}")
+    grows = ~np.isnan(spans[:, 0])
+    there = ~grows | ((spans[:, 0] <= 1) & (spans[:, 1] > 1))
+    if not grows.any() or not there.any():
+        raise FormatError("scales, and no stroke that grows" if not grows.any() else "no stroke at the natural size")
+    growing = Scales(
+        natural, least, fill, laid.strokes.picked(np.flatnonzero(grows)), laid.priorities[grows], spans[grows],
+        ~grows[there],
+    )  # fmt: skip
+    strokes = laid.strokes.picked(np.flatnonzero(there))
+    return Texture(laid.name, strokes, laid.priorities[there], laid.whole, scales=growing)
 
 
 def _check_set(strokes: Strokes, layers: tuple[HatchLayer, ...]) -> None:
@@ -229,13 +276,29 @@ def write(out: Sink, texture: Texture) -> None:
         head += f', "layers": [\n  {layers}]'
     if texture.engraving is not None:
         head += f', "engraving": {_engraving_text(texture.engraving)}'
+    if texture.scales is not None:
+        scales = texture.scales
+        head += f', "scales": {{"natural": {_fixed(scales.natural_pt, 3)}, "least": {_fixed(scales.least_pt, 3)}'
+        head += f', "fill": {json.dumps(scales.fill)}}}'
     out.write((head + ', "strokes": [\n').encode("ascii"))
-    lines = []
-    for i in range(len(s)):
-        control = ", ".join(f"[{_fixed(x, 3)}, {_fixed(y, 3)}]" for x, y in s[i].tolist())
-        priority = _fixed(float(texture.priorities[i]), 4)
-        lines.append(f' {{"priority": {priority}, "width": {_fixed(float(s.widths[i]), 4)}, "points": [{control}]}}')
+    lines = _stroke_lines(s, texture.priorities)
+    if texture.scales is not None:
+        fixed = [(float(p), line) for p, line, f in zip(texture.priorities, lines, texture.scales.fixed) if f]
+        grown = _stroke_lines(texture.scales.strokes, texture.scales.priorities, texture.scales.spans)
+        both = [*fixed, *zip(texture.scales.priorities.tolist(), grown, strict=True)]
+        lines = [line for _, line in sorted(both, key=lambda item: item[0])]
     out.write((",\n".join(lines) + "\n]}\n").encode("ascii"))
+
+
+def _stroke_lines(strokes: Strokes, priorities: Floats, spans: Floats | None = None) -> list[str]:
+    lines = []
+    for i in range(len(strokes)):
+        control = ", ".join(f"[{_fixed(x, 3)}, {_fixed(y, 3)}]" for x, y in strokes[i].tolist())
+        line = f' {{"priority": {_fixed(float(priorities[i]), 4)}, "width": {_fixed(float(strokes.widths[i]), 4)}'
+        if spans is not None:
+            line += ', "scale": [{}, {}]'.format(*(_fixed(float(v), 4) for v in spans[i]))
+        lines.append(line + f', "points": [{control}]}}')
+    return lines
 
 
 def _fixed(value: float, decimals: int) -> str:

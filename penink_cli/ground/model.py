@@ -183,6 +183,15 @@ class Strokes:
         """Control points (3k + 1, 2) of stroke i."""
         return self.points[self.first[i] : self.first[i + 1]]
 
+    def picked(self, which: Ints) -> Strokes:
+        """These strokes alone, in this order; of strokes that do not swell."""
+        assert self.knot_widths is None
+        sizes = np.diff(self.first)[which]
+        first = np.zeros(len(which) + 1, np.int64)
+        np.cumsum(sizes, out=first[1:])
+        at = np.repeat(self.first[:-1][which] - first[:-1], sizes) + np.arange(first[-1])
+        return replace(self, points=self.points[at], first=first, widths=self.widths[which])
+
     @classmethod
     def of(
         cls, width: float, height: float, chains: Sequence[npt.ArrayLike], widths: Sequence[npt.ArrayLike] | Floats
@@ -376,6 +385,26 @@ class Engraving:
 
 
 @dataclass(frozen=True, eq=False)
+class Scales:
+    """What a texture is on a sheet that is wider or narrower than it was made for: the same wall, seen larger.
+
+    natural_pt: width of the picture in which the tile has its own size. least_pt: no side of the tile is smaller.
+    fill: name of the hatching, of its own size always, that brings on the tone that these strokes do not reach.
+    strokes, priorities: (s,) those that grow with the picture, their pens not. spans: (s, 2) each is there where the
+        picture is from so many to less than so many times as wide as natural.
+    fixed: (t,) bool, those of the texture's strokes that do not grow; the others are among these.
+    """
+
+    natural_pt: float
+    least_pt: float
+    fill: str
+    strokes: Strokes
+    priorities: Floats
+    spans: Floats
+    fixed: npt.NDArray[np.bool_]
+
+
+@dataclass(frozen=True, eq=False)
 class Texture:
     """A stroke texture: a tile of prioritized strokes that repeats in x and y.
 
@@ -386,6 +415,7 @@ class Texture:
     layers: what the tile is an instance of where that is plain hatching, in the order of drawing.
     engraving: the lines that swell for which the tile stands where only strokes of one width can be drawn.
     oriented: no tile but a set of examples, each with its first point on a line of the field and +x along that.
+    scales: how it grows with the picture, None where it does not; strokes are those of the natural size.
     """
 
     name: str
@@ -395,6 +425,7 @@ class Texture:
     layers: tuple[HatchLayer, ...] = ()
     engraving: Engraving | None = None
     oriented: bool = False
+    scales: Scales | None = None
 
 
 def turned(texture: Texture, degrees: float) -> Texture:

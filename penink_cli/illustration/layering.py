@@ -179,7 +179,7 @@ def _hatched(
                 wanted, width_pt, height_pt, layer.edges, layer.texture, seed=seed + layer.seed + i,
                 pen_pt=layer.pen_pt, device_dpi=device_dpi, rule=layer.rule, outlines=ink if len(ink) else None,
                 directions=layer.directions and layer.directions.turned(layer.turn), lines=layer.lines,
-                swell=layer.swell, threads=threads,
+                natural_pt=illustration.width, swell=layer.swell, threads=threads,
             )  # fmt: skip
         hatched = hatched.rounded()
         ink = Strokes.joined([ink, hatched])

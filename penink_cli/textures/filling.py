@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
 from penink_cli.ground import exact
 from penink_cli.ground.angles import direction
 from penink_cli.ground.device import DOT, MEAN
-from penink_cli.ground.model import Floats, HatchLayer, Strokes, Texture
+from penink_cli.ground.model import Floats, HatchLayer, Scales, Strokes, Texture
 from penink_cli.textures.even import Torus
 
 TILE_PT = 144.0
@@ -28,6 +29,8 @@ def bowed_line(centre: Floats, angle: Floats, length: Floats, bow: Floats) -> Fl
     across = np.column_stack([-along[:, 1], along[:, 0]]) * bow[:, None]
     ends = np.stack([centre - half, centre - half / 3, centre + half / 3, centre + half], axis=1)
     return ends + np.stack([-across / 3, across, across, -across / 3], axis=1)
+#: Of textures that grow: the width of the picture that they are made for; least side of a tile; largest scale.
+NATURAL_PT, LEAST_PT, MOST_SCALE = 288.0, 6.0, 1000.0
 
 
 def fill(
@@ -89,3 +92,20 @@ def tile(
     points: Floats = np.round(np.concatenate(strokes), 2).astype(np.float64)
     laid = Strokes(width, height, points, first, np.array(widths), texture=name, seed=seed)
     return Texture(name, laid, np.arange(len(strokes), dtype=np.float64), whole, layers)
+
+
+def growing(
+    name: str, strokes: list[Floats], from_scale: list[float], rest: list[Floats], pen: float, width: float,
+    height: float, seed: int,
+) -> Texture:  # fmt: skip
+    """A tile whose strokes grow with the picture, each from a scale on, and the rest, of one size, after them."""
+    whole = tile(name, [*strokes, *rest], [pen] * (len(strokes) + len(rest)), width, height, seed, whole=True)
+    first = np.round(np.array(from_scale), 4)
+    spans = np.column_stack([first, np.full(len(first), MOST_SCALE)])
+    there = np.flatnonzero(np.concatenate([first <= 1, np.ones(len(rest), bool)]))
+    grows = np.arange(len(strokes))
+    scales = Scales(
+        NATURAL_PT, LEAST_PT, "parallel", whole.strokes.picked(grows), whole.priorities[grows], spans,
+        there >= len(strokes),
+    )  # fmt: skip
+    return replace(whole, strokes=whole.strokes.picked(there), priorities=whole.priorities[there], scales=scales)

@@ -7,7 +7,7 @@ into `tiles/`; until then it is made whenever it is asked for.
 #: Name -> what it is like.
 KINDS = {
     "barb": "short hooks along the form, as of feathers",
-    "brick": "a wall, its joints first, then the bricks one by one",
+    "brick": "a wall that grows with the picture, its joints first, then the bricks one by one",
     "contour-rings": "an engraving's lines that swell, in rings about a point",
     "crosshatch": "lines in one direction, and others across them where it is dark",
     "crosshatch4": "lines in up to four directions",
@@ -21,6 +21,7 @@ KINDS = {
     "hair": "long hairs along the form",
     "parallel": "lines in one direction, denser as it gets darker",
     "scribble": "loops of a restless pen",
+    "shingle": "a roof of rounded shingles that grows with the picture",
     "stipple": "dots",
     "wood": "an engraving's lines that waver, as those cut in wood",
 }

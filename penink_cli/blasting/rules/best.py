@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
-from penink_cli.blasting import hatching, pressure, solids, stroke_set, tile
+from dataclasses import replace
+
+import numpy as np
+
+from penink_cli.blasting import hatching, pressure, scaling, solids, stroke_set, tile
 from penink_cli.blasting.rules import engrave
+from penink_cli.blasting.sheet import Sheet
 from penink_cli.blasting.task import Begun, Task
 from penink_cli.ground.device import MEAN
 from penink_cli.ground.model import Strokes, Texture
@@ -28,6 +33,8 @@ def draw(task: Task) -> Strokes:
         strokes = engrave.engraved(task, begun)
     elif texture.layers:
         strokes = _layers(task, begun)
+    elif texture.scales is not None:
+        strokes = _grown(task, begun)
     else:
         strokes = _tile(task, begun)
     return begun.with_small(strokes)
@@ -44,6 +51,26 @@ def _layers(task: Task, begun: Begun) -> Strokes:
         sheet, layers, task.edges, task.gain, task.seed, task.pen_pt, task.tick, begun.field(), begun.told
     )
     return Strokes.joined([black, _pressed(task, begun, strokes)])
+
+
+def _grown(task: Task, begun: Begun) -> Strokes:
+    """The tile at its size, as far as it reaches, and a hatching of one size for the rest of the tone."""
+    texture = scaling.at_size(task.texture, task.width_pt, task.natural_pt)
+    assert task.texture.scales is not None
+    first = Strokes(task.width_pt, task.height_pt)
+    if len(texture.strokes):
+        most = tile.reach(texture, task.gain)
+        first = _tile(replace(task, texture=texture), Begun(replace(task, tone=np.minimum(task.tone, most))))
+    sheet = Sheet(task.tone, task.width_pt, task.height_pt, task.gain, task.threads)
+    for there in (task.outlines, begun.small, first):
+        if there is not None:
+            hatching.draw_first(sheet, there)
+    pen = float(np.median(task.texture.strokes.widths))
+    layers = [replace(layer, pen_pt=pen) for layer in scaling.FILLS[task.texture.scales.fill]]
+    filled = hatching.hatch_sheet(
+        sheet, layers, task.edges, task.gain, task.seed, task.pen_pt, task.tick, None, begun.told
+    )
+    return Strokes.joined([first, filled])
 
 
 def _pressed(task: Task, begun: Begun, strokes: Strokes) -> Strokes:

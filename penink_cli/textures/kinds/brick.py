@@ -1,4 +1,4 @@
-"""A wall: its joints first, then the bricks one by one, then everything."""
+"""A wall that grows with the picture: its joints, then the bricks one by one, closer where it is larger."""
 
 from __future__ import annotations
 
@@ -6,20 +6,24 @@ import numpy as np
 
 from penink_cli.ground.model import Floats, Texture
 from penink_cli.textures.even import Torus
-from penink_cli.textures.filling import FULL, GAIN_PT, bowed_line, fill, tile
+from penink_cli.textures.filling import FULL, GAIN_PT, bowed_line, fill, growing
 from penink_cli.textures.normal import normal
 
-#: Lines that a brick is hatched with before all is crossed by others, of 64 for which there is room.
-HATCHED = 56
+#: Lines that a brick is hatched with at the natural size, so many times more where the wall is as much larger, of 256
+#: for which there is room.
+HATCHED, ROOM = 32, 256
+#: What joints and hatching cover at the natural size.
+COVERED = 0.5
 
 
-def make(*, angle: float = 0.0, pen: float = 0.4, seed: int = 0) -> Texture:
-    """A wall: the joints first, then all bricks hatched, then everything."""
+def make(*, angle: float = -45.0, pen: float = 0.4, seed: int = 0) -> Texture:
+    """A wall: the joints first, then all bricks hatched, the shaded side first."""
     rng = np.random.default_rng(seed)
     # no whole number of a printer's dots, in which all joints would lie alike: ink would be off by a twentieth
     course, stretcher = 11.75, 35.75
-    rows, columns = 8, 3
+    rows, columns = 4, 3
     width, height = columns * stretcher, rows * course
+    slant = 5.0
     gap = 1.3
     joints: list[Floats] = []
     spans = []
@@ -36,25 +40,28 @@ def make(*, angle: float = 0.0, pen: float = 0.4, seed: int = 0) -> Texture:
                 line[1:3] += normal(rng, 0.25, 2)
                 joints.append(line)
     sides = [joints[k::4] for k in range(4)]
-    order = [group[i] for group in sides for i in rng.permutation(len(group))]
-    # a line more in every brick, each time half way between two that are there, of 64 in the end
-    for k in range(HATCHED):
-        across = (int(f"{k:06b}"[::-1], 2) + rng.uniform(0.2, 0.8, len(spans))) / 64
+    strokes = [group[i] for group in sides for i in rng.permutation(len(group))]
+    scales = [0.0] * len(strokes)
+    # a line more in every brick, each time half way between two that are there
+    bits = ROOM.bit_length() - 1
+    for k in range(ROOM):
+        across = (int(f"{k:0{bits}b}"[::-1], 2) + rng.uniform(0.2, 0.8, len(spans))) / ROOM
         for i in rng.permutation(len(spans)):
             left, top, right, bottom = spans[i] + np.array([0.7, rng.uniform(0.3, 1.2), -0.7, -rng.uniform(0.3, 1.2)])
-            foot = left - 5.0 + float(across[i]) * (right - left + 5.0)
+            foot = left - slant + float(across[i]) * (right - left + slant)
             # slanting, and within the brick
-            t = np.clip((np.array([left, right]) - foot) / 5.0, 0.0, 1.0)
+            t = np.clip((np.array([left, right]) - foot) / slant, 0.0, 1.0)
             if (t[1] - t[0]) * (bottom - top) < 1.5:
                 continue
             at = t[0] + np.array([0.0, 1 / 3, 2 / 3, 1.0]) * (t[1] - t[0])
-            line = np.column_stack([foot + 5.0 * at, bottom + (top - bottom) * at])
+            line = np.column_stack([foot + slant * at, bottom + (top - bottom) * at])
             line[1:3, 0] += float(normal(rng, 0.15, 1)[0])
-            order.append(line)
+            strokes.append(line)
+            scales.append((k + 1) / HATCHED)
 
     def course_lines(rng: np.random.Generator, n: int) -> Floats:
         centre = rng.uniform(0, 1, (n, 2)) * (width, height)
         return bowed_line(centre, angle + normal(rng, 1.2, n), rng.uniform(14, 30, n), normal(rng, 0.2, n))
 
-    strokes = order + fill(Torus(width, height, 0.7), course_lines, pen + GAIN_PT, FULL + 0.012, 0.6, 32, rng)
-    return tile("brick", strokes, [pen] * len(strokes), width, height, seed, whole=True)
+    rest = fill(Torus(width, height, 0.7), course_lines, pen + GAIN_PT, FULL + 0.012, COVERED, 32, rng)
+    return growing("brick", strokes, scales, rest, pen, width, height, seed)
