@@ -11,7 +11,7 @@ from penink_cli.textures.normal import normal
 
 #: Lines that a brick is hatched with at the natural size, so many times more where the wall is as much larger, of 256
 #: for which there is room.
-HATCHED, ROOM = 32, 256
+HATCHED, ROOM = 16, 128
 #: What joints and hatching cover at the natural size.
 COVERED = 0.5
 

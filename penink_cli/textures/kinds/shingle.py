@@ -10,7 +10,7 @@ from penink_cli.textures.filling import FULL, GAIN_PT, bowed_line, fill, growing
 from penink_cli.textures.normal import normal
 
 #: Lines of a shingle's shade at the natural size, and those that there is room for on a larger roof.
-SHADED, ROOM = 16, 128
+SHADED, ROOM = 8, 64
 #: What edges and shade cover at the natural size.
 COVERED = 0.45
 
