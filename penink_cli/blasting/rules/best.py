@@ -66,7 +66,7 @@ def _grown(task: Task, begun: Begun) -> Strokes:
         if there is not None:
             hatching.draw_first(sheet, there)
     pen = float(np.median(task.texture.strokes.widths))
-    layers = [replace(layer, pen_pt=pen) for layer in scaling.FILLS[task.texture.scales.fill]]
+    layers = tuple(replace(layer, pen_pt=pen) for layer in scaling.FILLS[task.texture.scales.fill])
     filled = hatching.hatch_sheet(
         sheet, layers, task.edges, task.gain, task.seed, task.pen_pt, task.tick, None, begun.told
     )

@@ -40,10 +40,10 @@ def make(*, angle: float = -45.0, pen: float = 0.4, seed: int = 0) -> Texture:
     scales = [0.0] * len(strokes)
     bits = ROOM.bit_length() - 1
     for k in range(ROOM):
-        across = (int(f"{k:0{bits}b}"[::-1], 2) + rng.uniform(0.2, 0.8, len(places))) / ROOM
+        parts = (int(f"{k:0{bits}b}"[::-1], 2) + rng.uniform(0.2, 0.8, len(places))) / ROOM
         for i in rng.permutation(len(places)):
             x, y = places[i]
-            part = float(across[i])
+            part = float(parts[i])
             # longest in the middle, between two shingles of the course above
             long = course * (0.15 + 1.6 * part * (1 - part)) * rng.uniform(0.7, 1.0)
             foot = x + 0.8 + part * (shingle - 1.6)
