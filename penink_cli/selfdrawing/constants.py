@@ -22,9 +22,11 @@ OTHERS: dict[str, Any] = {
     "LEAST_TONE": engraving.LEAST_TONE, "TAPER_PT": engraving.TAPER_PT, "TAPER_SHARE": engraving.TAPER_SHARE,
     "TIP_PT": engraving.TIP_PT, "BLUNT": engraving.BLUNT, "WAVER_PT": engraving.WAVER_PT,
     # dashes: least length, and the shortest and the longest stretch of line that holds one
-    "DASH_PT": 2.4, "PERIOD_PT": 6.0, "LONGEST_PERIOD_PT": 40.0,
+    "DASH_PT": 3.0, "PERIOD_PT": 11.0, "LONGEST_PERIOD_PT": 40.0,
     # every second line leaves off between these tones, in parts of that of the finest lines
     "LEAVES_OFF": (0.8, 1.6),
+    # what is shorter than so many of them is a dash
+    "DASHES": 4.0,
     # a dash is tapered over this part of its length at both ends; waver goes to and fro over so many points
     "DASH_TAPER": 0.25, "GRAIN": 4 * engraving.WAVER_LENGTH_PT,
     # tone steps by so many 255ths over an edge at which lines end

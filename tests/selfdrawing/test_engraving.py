@@ -10,7 +10,8 @@ import pytest
 
 from penink_cli.ground.model import Directions, EdgeList, GreyImage, Illustration, Layer
 from penink_cli.options.textures import find_texture
-from penink_cli.selfdrawing import postscript
+from penink_cli.selfdrawing import html, postscript
+from tests.selfdrawing.chromium import Page
 from tests.selfdrawing.drawn import by_page, by_printer, by_render, page_svg, seen
 from tests.selfdrawing.pictures import ghostscript, illustration
 
@@ -78,6 +79,36 @@ def test_a_page_draws_along_the_field(texture, tmp_path):
         off.append(np.degrees(np.arcsin(np.minimum(cosine, 1))))
         weight.append(np.hypot(*step.T)[far])
     assert np.average(np.concatenate(off), weights=np.concatenate(weight)) < 6
+
+
+def test_lines_stay_where_they_are_when_the_picture_is_moved(tmp_path):
+    picture = flat(0.3, "engraving", around(), 3)
+    (tmp_path / "a.html").write_bytes(html.write(picture, "x"))
+    ask = "(view.zoom = 6, view.x = {x}, view.y = {x}, repaint())"
+    with Page(tmp_path / "a.html", 400, 400) as page:
+        shots = []
+        for x in (-700, -740):
+            page.evaluate(ask.format(x=x))
+            shots.append(page.screenshot().astype(float))
+        page.evaluate("(layers[0].phases = null, repaint())")
+        anew = page.screenshot().astype(float)
+    first, second = shots[0][60:340, 60:340], shots[1][20:300, 20:300]
+    moved = np.abs(first - second).mean()
+    assert moved < 12 and np.abs(shots[1] - anew)[60:340, 60:340].mean() > 2 * moved
+
+
+def test_in_haste_it_draws_about_the_same(tmp_path):
+    (tmp_path / "a.html").write_bytes(html.write(flat(0.3, "form", around(), 3), "x"))
+    with Page(tmp_path / "a.html", 400, 400) as page:
+        tones = []
+        for call in ("repaint()", "(layers[0].phases = null, repaint(2))"):
+            page.evaluate(call)
+            tones.append(page.screenshot()[40:330, 40:330].mean())
+        assert tones[1] == pytest.approx(tones[0], abs=4)
+        before = page.evaluate("painted.count")
+        page.evaluate("zoomAt(1.2, 200, 200)")
+        page.until(f"painted.count > {before + 1}")  # twice, coarsely and then finely
+        assert page.evaluate("painted.every") == 1 and page.console == []
 
 
 def test_a_printer_draws_it_straight(tmp_path):

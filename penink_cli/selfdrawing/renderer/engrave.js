@@ -118,7 +118,7 @@ function stretch(sheet, track, spacing, from, upto, fill) {
     const walledA = a === 0 && from > 0, walledB = b === many - 1 && cuts[upto] >= 0, long = b - a + 1, ring = xs[0] === xs[n - 1] && ys[0] === ys[n - 1];
     const bounded = k => ring || xs[k] < 1 || ys[k] < 1 || xs[k] > sheet.width - 1 || ys[k] > sheet.height - 1;
     const freeA = a > 0 || !walledA && !bounded(from), freeB = b < many - 1 || !walledB && !bounded(upto);
-    const leftX = [], leftY = [], rightX = [], rightY = [], dash = !engraving.blunt && (freeA || freeB) && long < 3 * DASH_PT;
+    const leftX = [], leftY = [], rightX = [], rightY = [], dash = !engraving.blunt && (freeA || freeB) && long < DASHES * DASH_PT;
     const tapers = engraving.blunt ? 0 : dash ? DASH_TAPER * long : Math.min(TAPER_PT, TAPER_SHARE * long), even = dash ? 1 / (1 - DASH_TAPER * (freeA + freeB) / 2) : 1;
     const tip = (k, way, side, w) => {
       const i = way < 0 ? Math.max(from, k - 1) : Math.min(upto, k + 1), ux = (xs[i] - xs[k]) / 2, uy = (ys[i] - ys[k]) / 2, d = Math.max(1e-6, far(ux, uy)) * way;

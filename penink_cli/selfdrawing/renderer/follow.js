@@ -128,7 +128,14 @@ function linesAlong(sheet, number, turn, density, wanted, every, walls, spacing,
     right: i0 + columns * every < n ? columns - rim : columns, bottom: j0 + rows * every < m ? rows - rim : rows,
   };
   const there = wanted ? pick(sheet, grid, wanted) : new Uint8Array(psi.length).fill(1), rounds = clamp(Math.round(LINE_SMOOTHING * spacing * spacing), 2, 40);
-  return levels.map(level => evened(levelLines(grid, psi, nx, ny, dense, there, level), rounds, 2));
+  return levels.map(level => evened(levelLines(grid, psi, nx, ny, dense, there, level), rounds, 2).map(line => prolonged(line, sheet)));
+}
+
+// Lines that end at the frame's nodes, half a cell within it, go on beyond it.
+function prolonged(line, {width, height}) {
+  const [xs, ys] = line, n = xs.length, near = k => xs[k] < 1.5 || ys[k] < 1.5 || xs[k] > width - 1.5 || ys[k] > height - 1.5, begins = near(0), ends = near(n - 1);
+  if (xs[0] === xs[n - 1] && ys[0] === ys[n - 1] || !begins && !ends) return line;
+  return line.map(at => Float64Array.from([...begins ? [2.5 * at[0] - 1.5 * at[1]] : [], ...at, ...ends ? [2.5 * at[n - 1] - 1.5 * at[n - 2]] : []]));
 }
 
 // A number 0 .. 1 that depends on a place alone.
@@ -217,21 +224,29 @@ function follow(sheet, every, stroke) {
     const cell = (x, y) => clamp(Math.floor(y * perY) - y0, 0, tall - 1) * wide + clamp(Math.floor(x * perX) - x0, 0, wide - 1), at = (x, y) => cover[cell(x, y)];
     for (const [xs, ys] of linesAlong(sheet, number, layer.form[number][0], density, near, every, walls, 3)[0]) {
       const n = xs.length, due = chance(xs[n >> 1], ys[n >> 1]), enough = RAGGED[0] + (RAGGED[1] - RAGGED[0]) * due;
-      let points = [];
+      let points = [], black = false, walled = false;
       const end = () => {
-        if (points.length > 2 * STROKE_LEAST) {
-          const middle = points.length >> 2 << 1;
-          found.push([number, points, at(points[middle], points[middle + 1]) > solid]);
+        if (points.length > 2 * STROKE_LEAST || walled && points.length > 2) {          // between walls even a short one tells
+          found.push([number, points, black]);
           for (let k = 0; k + 3 < points.length; k += 2) {
             const b = blockAt(points[k], points[k + 1]);
             if (b >= 0) ink[b] += far(points[k + 2] - points[k], points[k + 3] - points[k + 1]) * pen;
           }
         }
         points = [];
+        walled = false;
       };
       for (let k = 0; k < n; k++) {
         const x = xs[k], y = ys[k], w = WAVER[0] * SINE[(WAVER[1] * x + WAVER[2] * y) * STEPS & TURN - 1] * 0.7;
         const c = cell(x, y), there = cover[c] > enough && cover[c] > due * density[c] * pen;   // of lines too many some are left out
+        if (black !== cover[c] > solid) {                     // into black, or out of it, a line goes on as another stroke
+          const last = points.slice(-2);
+          walled = true;
+          end();
+          black = !black;
+          walled = true;
+          points = last;
+        }
         if (there) points.push(x + w, y + w);
         const cut = points.length > 2 * STROKE_PT[0] && chance(x, y) < 1 / 24 || points.length > 2 * STROKE_PT[1];
         if (!there || cut) { end(); continue; }
@@ -241,7 +256,9 @@ function follow(sheet, every, stroke) {
             const back = t - pen / 2;
             if (back > 0) points.push(x + w + back * (xs[k + 1] - x), y + w + back * (ys[k + 1] - y));
             else if (points.length > 2) { points[points.length - 2] += back * (x - xs[k - 1] || 0); points[points.length - 1] += back * (y - ys[k - 1] || 0); }
+            walled = true;
             end();
+            walled = true;
           }
         }
       }
