@@ -9,6 +9,7 @@ import numpy as np
 
 from penink_cli.blasting import screens
 from penink_cli.blasting.outlines import Run, runs
+from penink_cli.formats.compact import ANGLES
 from penink_cli.geometry.trails import trails
 from penink_cli.ground.angles import direction
 from penink_cli.ground.errors import LimitError
@@ -30,13 +31,11 @@ MOST_SAMPLES = 254
 MOST_EDGES = 20000
 #: Of telling lines, all together.
 MOST_POINTS = 40000
-#: Directions are sent as so many angles of a half turn, those that an archive keeps.
-ANGLES = 48
 
 
 @dataclass(frozen=True)
 class FieldData:
-    """Directions: a byte a sample, coded as grey is, in angles of ANGLES a half turn."""
+    """Directions: a byte a sample, coded as grey is, in the ANGLES of a half turn that archives keep."""
 
     width: int
     height: int
