@@ -13,11 +13,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
 
 from penink_cli.blasting import candidates, curves, thin, walls
+from penink_cli.blasting.curve_fitting import fit
 from penink_cli.blasting.form import Form
 from penink_cli.blasting.shares import ALONE, shares
 from penink_cli.blasting.sheet import Cells, Sheet
@@ -62,6 +64,8 @@ FINE_COST, FINE_SHORTEST_PT = 0.02, 20.5
 FILLER_COST, FILLER_CAUTION, FILLER_SHORTEST_PT = 0.05, 1.3, 4.0
 #: Along the frame strokes are drawn where it is darker, and count their own ink so many times.
 RIM_TONE, RIM_CAUTION = 0.85, 4.0
+#: Strokes along a field are fitted anew within this, at points so far apart.
+REFIT_PT, REFIT_STEP_PT = 0.15, 2.0
 #: Rows of fine strokes that are tried, and the moves sideways, in rows, that look for the middle of a gap.
 FINE_ROW_PT, FINE_MOVES = 1.5, (-0.33, 0.33, 0.0)
 #: How far a hand's pressure widens or narrows a stroke, and in how many rounds that is found.
@@ -149,9 +153,29 @@ def hatch_sheet(
         drawn = Strokes.joined([drawn, *fillers(sheet, form, pens, seed)])
     fine = fine_strokes(sheet, layers, finest, gain_pt, borders, seed, form)
     drawn = Strokes.joined([drawn, *fine])
+    if form:
+        drawn = in_fewer_cubics(drawn)
     if pen_pt is None and len(drawn):
         drawn = press(sheet, drawn, seed, crowd)
     return drawn
+
+
+def in_fewer_cubics(strokes: Strokes) -> Strokes:
+    """The same strokes, those of several cubics fitted anew: what trimming has left often needs but one."""
+    counts = np.diff(strokes.first)
+    long = np.flatnonzero(counts > 4)
+    if not len(long):
+        return strokes
+    several = strokes.taken(counts > 4)
+    pieces = curves.pieces_of(several.points, several.first, REFIT_STEP_PT)
+    lines = curves.sample(several.points, several.first, pieces)
+    parts = [strokes.points[a:b] for a, b in pairwise(strokes.first.tolist())]
+    for i, a, b in zip(long.tolist(), lines.first[:-1].tolist(), lines.first[1:].tolist()):
+        control = fit(lines.points[a:b], REFIT_PT)
+        if len(control) < len(parts[i]):
+            parts[i] = control
+    first = curves.starts(np.array([len(part) for part in parts]))
+    return replace(strokes, points=np.concatenate(parts), first=first)
 
 
 def layer_shares(

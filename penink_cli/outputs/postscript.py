@@ -371,7 +371,7 @@ def _bends(segments: Floats) -> tuple[Ints, Ints]:
     """How far inner control points (s, 4, 2) lie to the left of the chord, as p and q (s, 2), and the kind of each.
 
     Kind 1 is straight, 2 bends, 3 is neither: sliding its control points along the chord to a third and two
-    thirds would move its ink by more than half a unit.
+    thirds would move its ink by more than a unit.
     """
     chord = segments[:, 3] - segments[:, 0]
     length = length_of(chord)
@@ -384,7 +384,7 @@ def _bends(segments: Floats) -> tuple[Ints, Ints]:
     slide = along.max(axis=0)
     slope = 3 * np.maximum(np.abs(left).max(axis=0), np.abs(left[1] - left[0])) / safe
     whole = words.whole(left)
-    usual = (slide <= length / 4) & (slide * slope <= 0.5) & (length >= 2)
+    usual = (slide <= length / 4) & (slide * slope <= 1.0) & (length >= 2)
     kinds: npt.NDArray[np.int64] = np.where(usual, np.where((whole == 0).all(axis=0), 1, 2), 3)
     return np.stack([whole[0], whole[1] - whole[0]], axis=1), kinds
 
