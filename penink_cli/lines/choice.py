@@ -15,7 +15,7 @@ USUAL_RANK, LEAST_PART, MOST = 6.0, 0.7, 1.6
 #: The least rank at this size on paper (root of the area, points): with more room faint lines become worth while.
 SIZE_PT, LEAST_RANK, RANKS = 432.0, 0.8, (0.5, 1.6)
 #: What is shorter on paper is no line, what is finer no spot.
-SHORTEST_PT, FINEST_SPOT_PT = 3.0, 0.35
+SHORTEST_PT, FINEST_SPOT_PT = 3.0, 0.25
 
 
 def least_rank(width_pt: float, height_pt: float) -> float:
@@ -29,7 +29,9 @@ def chosen(lines: Lines, width_pt: float, height_pt: float, choice: LineChoice, 
     least = least_rank(width_pt, height_pt) if choice.min_rank is None else choice.min_rank
     scale = np.array([width_pt / lines.width, height_pt / lines.height])
     order = np.argsort(-lines.rank, kind="stable")
-    order = order[(lines.rank[order] >= least) & (lines.white[order] == white)]
+    # a stamp has room for few lines, but eyes are eyes
+    needed = np.where(lines.breadth > 0, min(least, LEAST_RANK), least)
+    order = order[(lines.rank[order] >= needed[order]) & (lines.white[order] == white)]
     room = _Room(width_pt, height_pt)
     budget = choice.per_inch2 * width_pt * height_pt / 72.0
     out = []

@@ -48,10 +48,12 @@ BESIDE, RIDGE = 3.0, 0.03
 #: is more of lines around it than this response (in lettering they are letters), where it is broader than SMALL
 #: (pixels: hatching can show it) and where its border is less crisp.
 SPOT, LONG_SPOT, CALM, SMALL, CRISP = 12.0, 0.6, 0.004, 12.0, 0.45
+#: Drawn as broad as it is where it is so dark, and less the less it is.
+DARK = 0.75
 #: What lies in or along a spot and is no longer than so many times the spot is a part of it.
 AROUND = 4.0
 #: How far from a spot a fine line, and a coarse one, are still its own: the filters' reach.
-BESIDE_SPOT = (1.5, 9.0)
+BESIDE_SPOT = (1.5, 6.0)
 #: A coarse line stays where at least so much of it is further than so many pixels from any fine line of some rank.
 FAR, NEAR, FAR_RANK = 0.7, 5.0, 0.45
 #: σ of the field that lines are held against where none is given, and of the tone around them, pixels.
@@ -219,7 +221,10 @@ def _ridges(lines: list[_Line], picture: Picture) -> Floats:
 
 
 def _spot_line(spot: Spot, strong: Picture) -> _Line:
-    """A spot as a line: of one point where it is round. strong: (h, w) how much of lines there is around each place."""
+    """A spot as a line: of one point where it is round, the smaller the less dark it is: an iris is no hole.
+
+    strong: (h, w) how much of lines there is around each place.
+    """
     ends = [(spot.x, spot.y, FULL)]
     rank = SPOT * spot.contrast * spot.contrast * spot.contrast
     if spot.dx or spot.dy:
@@ -228,7 +233,8 @@ def _spot_line(spot: Spot, strong: Picture) -> _Line:
     points = np.array(ends)
     calm = min(1.0, CALM / max(float(_at(strong, points)[0]), 1e-9))
     sure = calm * min(1.0, SMALL / spot.breadth) * spot.crisp / CRISP
-    return _Line(points, rank * sure * sure, False, spot.breadth)
+    full = min(1.0, spot.dark / DARK)
+    return _Line(points, rank * sure * sure, False, spot.breadth * full * full)
 
 
 def _at(values: npt.NDArray[np.generic], points: Floats) -> npt.NDArray[np.generic]:

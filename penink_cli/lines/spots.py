@@ -40,6 +40,7 @@ class Spot:
     x, y: its middle, pixel centres at whole numbers. dx, dy: from there to the middle of its rounded end. breadth:
     pixels. contrast: grey step to its surroundings.
     crisp: the part of it that its border makes up.
+    dark: how dark it is on the mean, in parts of the way from its surroundings to black.
     """
 
     x: float
@@ -49,6 +50,7 @@ class Spot:
     breadth: float
     contrast: float
     crisp: float
+    dark: float
 
 
 def spots(picture: Picture, threads: int) -> list[Spot]:
@@ -63,7 +65,8 @@ def spots(picture: Picture, threads: int) -> list[Spot]:
     taken = np.zeros(picture.shape, np.bool_)
     found = []
     for _, k, i, j in candidates[:MOST]:
-        if not taken[i, j] and (spot := _spot(blurs[0], taken, i, j, FITS * FINEST * float(exact.power(RATIO, k)))):
+        radius = FITS * FINEST * float(exact.power(RATIO, k))
+        if not taken[i, j] and (spot := _spot(picture, blurs[0], taken, i, j, radius)):
             found.append(spot)
     return found
 
@@ -87,8 +90,11 @@ def _maxima(steps: list[Picture], k: int, least: np.float32) -> list[tuple[int, 
     return list(zip(rows.tolist(), columns.tolist()))
 
 
-def _spot(picture: Picture, taken: np.ndarray, i: int, j: int, radius: float) -> Spot | None:
-    """What lies around (i, j), of about that radius, if it is a spot; its place is then taken."""
+def _spot(sharp: Picture, picture: Picture, taken: np.ndarray, i: int, j: int, radius: float) -> Spot | None:
+    """What lies around (i, j), of about that radius, if it is a spot; its place is then taken.
+
+    sharp, picture: before and after the first smoothing.
+    """
     r = math.ceil(2.8 * radius) + 1
     top, left = max(0, i - r), max(0, j - r)
     window = picture[top : i + r + 1, left : j + r + 1]
@@ -106,15 +112,15 @@ def _spot(picture: Picture, taken: np.ndarray, i: int, j: int, radius: float) ->
     bare = window < core + 0.5 * contrast
     if np.count_nonzero(bare & rim) > (ATTACHED if radius >= LEAST_ATTACHED else OPEN) * len(ring):
         return None
-    dark = ndimage.binary_fill_holes(bare)  # a catchlight is part of the pupil
-    thick = ndimage.binary_opening(dark, _disc(max(1.0, THICK * radius)))
+    filled = ndimage.binary_fill_holes(bare)  # a catchlight is part of the pupil
+    thick = ndimage.binary_opening(filled, _disc(max(1.0, THICK * radius)))
     part, _ = ndimage.label(thick)
     mine = part == part[i - top, j - left]
     if not part[i - top, j - left] or (mine & taken[top : i + r + 1, left : j + r + 1]).any():
         return None
     if (thick & rim).any() or np.count_nonzero(mine & ~bare) > HOLLOW * np.count_nonzero(mine):
         return None
-    outer = ndimage.binary_dilation(mine, iterations=3) & ~ndimage.binary_dilation(mine, iterations=2) & ~dark
+    outer = ndimage.binary_dilation(mine, iterations=3) & ~ndimage.binary_dilation(mine, iterations=2) & ~filled
     inner = mine & ~ndimage.binary_erosion(mine, border_value=1)
     if not outer.any():
         return None
@@ -134,11 +140,12 @@ def _spot(picture: Picture, taken: np.ndarray, i: int, j: int, radius: float) ->
         return None
     taken[top : i + r + 1, left : j + r + 1] |= mine
     middle = left + mx / n, top + my / n
+    dark = min(max(1 - _mean(sharp[top : i + r + 1, left : j + r + 1][mine]) / max(ground, 0.01), 0.0), 1.0)
     if major < 1.3 * minor:
-        return Spot(*middle, 0.0, 0.0, 2 * math.sqrt(n / math.pi), contrast, crisp)
+        return Spot(*middle, 0.0, 0.0, 2 * math.sqrt(n / math.pi), contrast, crisp, dark)
     ex, ey = (xx - yy + root, 2 * xy) if xx > yy else (2 * xy, yy - xx + root)
     size = 2 * (major - minor) / math.sqrt(ex * ex + ey * ey)
-    return Spot(*middle, ex * size, ey * size, 4 * minor, contrast, crisp)
+    return Spot(*middle, ex * size, ey * size, 4 * minor, contrast, crisp, dark)
 
 
 def _disc(radius: float) -> np.ndarray:

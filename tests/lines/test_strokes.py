@@ -103,4 +103,4 @@ def test_spots_are_as_broad_as_they_are():
     strokes = line_strokes(lines, 800, 600, LineChoice())
     assert [len(strokes[i]) for i in range(len(strokes))] == [1, 4, 1]
     assert strokes.widths.tolist() == pytest.approx([16, 10, 0.6])
-    assert len(line_strokes(lines, 400, 300, LineChoice())) == 2  # the third is too fine by then
+    assert len(line_strokes(lines, 320, 240, LineChoice())) == 2  # the third is too fine by then
