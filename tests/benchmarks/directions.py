@@ -1,4 +1,6 @@
-"""Direction fields measured: ``python -m tests.benchmarks.directions`` (two minutes).
+"""Direction fields measured: ``python -m tests.benchmarks.directions [TABLE]...`` (two minutes).
+
+Tables: rings beside_an_edge sizes photographs megapixel sets one_pen.
 
 How far a field is from the rings of a ringed picture, and from stripes beside an edge; whether a stamp and a poster
 find the same directions; what a field costs to find and to keep, and how many knots it has in photographs; how
@@ -7,6 +9,7 @@ true in tone sets of strokes are.
 
 from __future__ import annotations
 
+import sys
 import time
 
 import numpy as np
@@ -167,10 +170,25 @@ def sets() -> None:
         print(f"{texture:14} {name:12} {inches:4d} {rms:9.2f} {bias:6.2f} {len(strokes):9d} {cost:8.1f}")
 
 
+def one_pen() -> None:
+    """Flat tones in one pen of .3 mm: what no pressure of the hand evens out."""
+    print("set, one pen of .3 mm, flat, 4 in     tone   RMS %   bias   strokes")
+    for texture in ("fur", "hair", "barb", "grass-blades"):
+        for value in (0.2, 0.4, 0.7):
+            tone = np.full((64, 64), value)
+            strokes = blast(tone, 288, 288, None, find_texture(texture), pen_pt=0.3 / 25.4 * 72)
+            rms, bias, _ = measures.tone_figures(strokes, tone)
+            print(f"  {texture:33} {value:6} {rms:7.2f} {bias:+6.2f} {len(strokes):9d}", flush=True)
+
+
+TABLES = (rings, beside_an_edge, sizes, photographs, megapixel, sets, one_pen)
+
+
 def main() -> None:
-    """Print the tables."""
-    for table in (rings, beside_an_edge, sizes, photographs, megapixel, sets):
-        table()
+    """Print the tables, or those named."""
+    for table in TABLES:
+        if len(sys.argv) < 2 or table.__name__ in sys.argv[1:]:
+            table()
 
 
 if __name__ == "__main__":

@@ -1,4 +1,6 @@
-"""Engraving measured: ``python -m tests.benchmarks.engraving [--quick]``.
+"""Engraving measured: ``python -m tests.benchmarks.engraving [TABLE]... [--quick]``.
+
+Tables: steps spacing renderings cost poster tones.
 
 Tone as the eye sees it at 600 and 1200 dpi, on photographs and a ramp, straight and along the form; the largest step
 of the ramp; how smoothly widths go; time and memory of a blast of 8 inches; bytes a knot; other programs' renderings.
@@ -11,6 +13,7 @@ import io
 import resource
 import shutil
 import subprocess
+import sys
 import tempfile
 import time
 from functools import partial
@@ -29,6 +32,7 @@ from penink_cli.outputs import pdf, postscript, svg
 from penink_cli.outputs.page import lay_out
 from penink_cli.outputs.raster import cover
 from penink_cli.travel.order import ordered
+from tests.benchmarks.form import analytic
 from tests.blasting import measures
 from tests.outputs.rendering import difference, ghostscript, pixels
 
@@ -84,10 +88,14 @@ def steps() -> None:
     printed = 100 * np.linspace(0, 1, 400) - measures.tone_error(strokes, tone)[15:-15].mean(axis=0)
     change = np.diff(printed[8:-8:4])
     print(f"ramp: steps of a hundredth change the tone by {change.min():.2f} to {change.max():.2f} %")
+    print(f"widths: second difference {second_difference(strokes):.3f} of the distance of knots (99 %)")
+
+
+def second_difference(strokes: Strokes) -> float:
+    """How far widths bend along a line, in parts of the distance of knots: what 99 % of them stay below."""
     knots, widths = strokes.knots, strokes.at_knots
     bends = [np.abs(np.diff(widths[a:b], 2))[3:-3] for a, b in pairwise(knots) if b - a > 10]
-    bend = np.quantile(np.concatenate(bends), 0.99) / KNOT_PT
-    print(f"widths: second difference {bend:.3f} of the distance of knots (99 %)")
+    return float(np.quantile(np.concatenate(bends), 0.99) / KNOT_PT)
 
 
 def cost() -> None:
@@ -149,15 +157,53 @@ def sizes_and_renderings() -> None:
             print(f"to-pgm less {name}: {difference(ours, shot, 300):.2f} % after a low-pass, {bias:+.2f} on the mean")
 
 
+def spacing() -> None:
+    """How even the lines lie: at most .05 in one direction, .12 where they curve; nor do widths bend (see `steps`)."""
+    print("flat 35 %, 6 × 6 in: cv (≤ .05 constant, ≤ .12 curved)  doubled  gaping   widths' second difference (≤ .10)")
+    for kind in ("constant", "circles", "saddle", "fan", "waves", "random"):
+        strokes = blast(np.full((64, 64), 0.35), 432, 432, None, find_texture("engraving"), directions=analytic(kind))
+        f = measures.ray_gaps(strokes)
+        print(
+            f"  {kind:20} {f['cv']:8.3f} {f['doubled']:32.4f} {f['gaping']:7.4f} {second_difference(strokes):12.3f}",
+            flush=True,
+        )
+
+
+POSTER = """
+import resource, sys, time, numpy as np
+from penink_cli.blasting.blast import blast
+from penink_cli.options.textures import find_texture
+from tests.benchmarks.engraving import form, photograph
+tone, field = photograph("camera"), form("camera")
+begun = time.process_time()
+strokes = blast(tone, 24 * 72, 36 * 72, None, find_texture("engraving"), directions=field, threads=2)
+most = int(next(line for line in open("/proc/self/status") if line.startswith("VmHWM")).split()[1]) / 1024
+spent = time.process_time() - begun
+print(f"24 × 36 in: {len(strokes)} strokes, {spent:.1f} s of processor (60), {most:.0f} MB (1200)")
+"""
+
+
+def poster() -> None:
+    """24 × 36 in: at most 60 s of processor, 1.2 GB."""
+    subprocess.run([sys.executable, "-c", POSTER], check=True)
+
+
+TABLES = {
+    "steps": steps, "spacing": spacing, "renderings": sizes_and_renderings, "cost": cost, "poster": poster,
+}  # fmt: skip
+
+
 def main() -> None:
-    """All of it."""
+    """All of it, or the tables named."""
     parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("tables", nargs="*", metavar="TABLE")
     parser.add_argument("--quick", action="store_true", help="three pictures at 4 in")
-    quick = parser.parse_args().quick
-    steps()
-    sizes_and_renderings()
-    cost()
-    tones(("ramp", *PHOTOGRAPHS[: 3 if quick else None]), (4.0,) if quick else (4.0, 8.0))
+    asked = parser.parse_args()
+    for name in asked.tables or [*TABLES, "tones"]:
+        if name == "tones":
+            tones(("ramp", *PHOTOGRAPHS[: 3 if asked.quick else None]), (4.0,) if asked.quick else (4.0, 8.0))
+        else:
+            TABLES[name]()
 
 
 if __name__ == "__main__":
