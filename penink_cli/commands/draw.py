@@ -47,6 +47,8 @@ COMPOSED_DPI = 288.0  # as `compose` has it
 PRINTER_DPI = 600.0
 POSTER_DPI = 1152.0  # pixels an inch that an illustration is made from: those of a drawing four times as wide
 ARCHIVE = ".penink"
+# What an archive begins with that is then made as coarse as its bytes ask.
+RICH_WORTH, RICH_ERROR = 40.0, 2.0
 FIELD_SIDE = 64  # samples of directions along the longer side of an archive
 WORTH = 120.0  # squared grey levels a bit that a chain of edges of an archive saves
 DEVICE_SIDE = 254  # samples a side that a device is sent at the most
@@ -127,6 +129,9 @@ _TOLD = {
 @page_options
 @colour_option
 @click.option("--order", is_flag=True, help="Order and turn the strokes so that a pen travels little (.svg).")
+@click.option(
+    "--max-bytes", type=click.IntRange(1), metavar="N", help="The best illustration of at most N bytes (.penink)."
+)
 @threads_option
 @verbose_option
 def draw(
@@ -164,6 +169,8 @@ def draw(
     context = click.get_current_context()
     given = {name: value for name, value in context.params.items() if _is_given(context, name)}
     ending = _ending(output, out_dir, wanted, watching)
+    if "max_bytes" in given and ending != ARCHIVE:
+        raise click.UsageError(f"--max-bytes is of no use for {ending}")
     if width is not None and height is not None:
         raise click.UsageError("give one of --width and --height")
     read = [path for name in ("mask", "directions_file") if (path := given.get(name)) is not None]
@@ -496,7 +503,8 @@ class _Drawing:
 
     def thinned(self, edges: str, grey: str, size: tuple[int, int]) -> str:
         """The edges that are worth their bytes, and those that will be outlined."""
-        told = ["--worth", repr(WORTH), *self.seen_at(), "--photo", grey]
+        worth = RICH_WORTH if "max_bytes" in self.given else WORTH
+        told = ["--worth", repr(worth), *self.seen_at(), "--photo", grey]
         if "outline" in self.stages:
             choice = self.stages["outline"]
             told += ["--keep-strength", str(choice.get("min-strength", 0))]
@@ -574,7 +582,8 @@ class _Drawing:
             reduced = self.chain.name(plate.named("reduced.pgm"))
             reduce = ["-e", edges, "--photo", plate.grey]
             # a page draws itself, and no grid comes near to a photo of noise or fine texture: half of it is enough
-            auto = [*reduce, "--auto", "--seen-at", repr(self.width), samples]
+            auto = [*reduce, "--auto", "--seen-at", repr(self.width)]
+            auto += ["--max-error", repr(RICH_ERROR)] * ("max_bytes" in self.given) + [samples]
             if self.ending == ".html" or not self.chain.run("reduce", auto, reduced, may_fail=True):
                 self.chain.run("reduce", [*reduce, "--size", smaller, samples], reduced)
             layer: dict[str, Any] = {"samples": reduced, "edges": edges, "texture": blast.get("texture", "crosshatch")}
@@ -607,6 +616,8 @@ class _Drawing:
         self.chain.put(name, json.dumps(manifest) + "\n")
         by = writer(self.ending)
         assert by is not None
+        if "max_bytes" in self.given:
+            page = [*page, "--max-bytes", str(self.given["max_bytes"])]
         self.chain.run(by, [*page, name], output)
 
 

@@ -7,13 +7,22 @@ from typing import Any
 import click
 
 from penink_cli.ground.streams import writing
-from penink_cli.options.common import filter_options
-from penink_cli.options.inputs import read_illustration
+from penink_cli.options.common import filter_options, threads_option
+from penink_cli.options.inputs import read_illustration, settled
 
 
 @click.command()
 @filter_options
-def pack(file: str | None, output: str | None, max_pixels: int, **_: Any) -> None:
+@click.option(
+    "--max-bytes",
+    type=click.IntRange(1),
+    metavar="N",
+    help="The best file of at most N bytes: a coarser grid, fewer edges, lines and directions.",
+)
+@threads_option
+def pack(
+    file: str | None, output: str | None, max_pixels: int, max_bytes: int | None, threads: int | None, **_: Any
+) -> None:
     """Pack an illustration and its members in one small file.
 
     FILE is an illustration's manifest; the files it names are found beside it. The archive is a ZIP: unzipped, it is
@@ -24,6 +33,12 @@ def pack(file: str | None, output: str | None, max_pixels: int, **_: Any) -> Non
     """
     from penink_cli.formats import archive, illustration
 
-    packed = archive.pack(illustration.members(read_illustration(file, max_pixels)))
+    whole = read_illustration(file, max_pixels)
+    if max_bytes is None:
+        packed = archive.pack(illustration.members(whole))
+    else:
+        from penink_cli.illustration.fitting import packed_within
+
+        packed = packed_within(whole, max_bytes, settled, threads)
     with writing(output) as out:
         out.write(packed)

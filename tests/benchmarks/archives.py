@@ -1,0 +1,162 @@
+"""Bytes of archives and what they show, walls at four sizes: ``python -m tests.benchmarks.archives [PART …] [-- PHOTO …]``.
+
+sizes        bytes of `draw -o x.penink` of half a megapixel, by members, encoding and decoding; without directions
+             and lines in the style `true`
+similarity   `render` at 6 in of that archive, and of one with all edges, the grid of RMS 8 and 64 levels as archives
+             had before, against the photograph (`detail` and `telling` of tests.benchmarks.drawing)
+wall         brick from natural 4 in at 2, 4, 8, 16 in: courses, tone, time beside crosshatch
+"""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import numpy as np
+from PIL import Image
+
+from penink_cli.blasting.blast import blast
+from penink_cli.formats import archive, illustration
+from penink_cli.options.inputs import read_illustration
+from penink_cli.options.textures import find_texture
+from tests.benchmarks.drawing import seen
+from tests.blasting import measures
+
+PIXELS = 500_000
+NAMES = ("astronaut", "camera", "chelsea", "coffee", "coins", "moon", "rocket")
+
+
+def penink(*words: object) -> None:
+    subprocess.run([sys.executable, "-m", "penink_cli", *map(str, words)], check=True)
+
+
+def photograph(name: str, folder: Path) -> Path:
+    """A bundled picture of half a megapixel."""
+    import skimage.data
+
+    picture = Image.fromarray(np.asarray(getattr(skimage.data, name)()))
+    part = (PIXELS / (picture.width * picture.height)) ** 0.5
+    path = folder / f"{name}.png"
+    picture.resize((round(picture.width * part), round(picture.height * part)), Image.Resampling.BICUBIC).save(path)
+    return path
+
+
+def drawn(name: str, folder: Path) -> Path:
+    path = folder / f"{name}.penink"
+    if not path.exists():
+        penink("draw", photograph(name, folder), "-o", path)
+    return path
+
+
+def sizes(names: list[str], folder: Path) -> None:
+    print(
+        "bytes of draw -o x.penink, half a megapixel; plain: --style true, without directions and lines; s of processor"
+    )
+    print("| photograph | all | samples | edges | directions | lines | grid, edges | encode | decode | plain |")
+    print("|" + " --- |" * 10)
+    rows = []
+    for name in names:
+        path = drawn(name, folder)
+        members = {key.rsplit(".", 1)[-1]: len(data) for key, data in archive.read(path.read_bytes(), "").items()}
+        start = time.process_time()
+        whole = read_illustration(str(path), 10**8)
+        middle = time.process_time()
+        archive.pack(illustration.members(whole))
+        end = time.process_time()
+        plain = folder / "plain.penink"
+        penink("draw", photograph(name, folder), "--style", "true", "--no-lines", "-o", plain)
+        rows.append([path.stat().st_size, *(members.get(k, 0) for k in ("samples", "edges", "directions", "lines"))])
+        rows[-1].append(plain.stat().st_size)
+        h, w = whole.layers[0].samples.values.shape
+        count = len(whole.layers[0].edges.edges) if whole.layers[0].edges else 0
+        cells = [*rows[-1][:5], f"{w}x{h}, {count}", f"{end - middle:.2f}", f"{middle - start:.2f}", rows[-1][5]]
+        print(f"| {name} | " + " | ".join(map(str, cells)) + " |", flush=True)
+    mean = [f"{v:.0f}" for v in np.mean(rows, axis=0)]
+    print(f"| mean | {' | '.join(mean[:5])} | | | | {mean[5]} |")
+
+
+def before(name: str, folder: Path) -> Path:
+    """The archive of the same photograph as it was: all edges, RMS 8, 64 levels, 96 samples of directions, all lines."""
+    photo, f = (
+        photograph(name, folder),
+        {k: folder / k for k in ("g.pgm", "e.json", "l.json", "d.pgm", "s.pgm", "r.pgm")},
+    )
+    penink("compose", "--width", 432, "--dpi", 1152, photo, "-o", f["g.pgm"])
+    penink("detect-edges", "--high", 0.15, f["g.pgm"], "-o", f["e.json"])
+    penink("detect-lines", photo, "-o", f["l.json"])
+    penink("detect-directions", "-e", f["e.json"], "--lines", f["l.json"], photo, "-o", f["d.pgm"])
+    penink("extract-samples", "-e", f["e.json"], f["g.pgm"], "-o", f["s.pgm"])
+    penink("reduce", "-e", f["e.json"], "--photo", f["g.pgm"], "--auto", f["s.pgm"], "-o", f["r.pgm"])
+    now = json.loads(archive.read(drawn(name, folder).read_bytes(), "")["illustration.json"])
+    layer = now["layers"][0] | {
+        "samples": "r.pgm",
+        "edges": "e.json",
+        "directions": "d.pgm",
+        "lines": "l.json",
+        "levels": 64,
+    }
+    path = folder / "before.illustration.json"
+    path.write_text(json.dumps(now | {"layers": [layer]}))
+    return path
+
+
+def similarity(names: list[str], folder: Path) -> None:
+    print("drawings at 6 in against the photograph: detail / telling of the archive, of one as before, difference")
+    rows = []
+    for name in names:
+        measured = []
+        for path in (drawn(name, folder), before(name, folder)):
+            penink("render", path, "--width", "6in", "--device-dpi", "none", "-o", folder / "s.jsonl")
+            penink("to-png", folder / "s.jsonl", "-o", folder / "s.png")
+            found = seen(folder / "s.png", folder / f"{name}.png")
+            measured.append((found["detail"], found["telling"]))
+        (a, b), (c, d) = measured
+        rows.append((a - c, b - d))
+        print(f"{name:10s} {a:.3f} / {b:.3f}   {c:.3f} / {d:.3f}   {a - c:+.3f} / {b - d:+.3f}", flush=True)
+    print("mean difference " + " / ".join(f"{v:+.3f}" for v in np.mean(rows, axis=0)))
+
+
+def wall(names: list[str], folder: Path) -> None:
+    print("brick, natural width 4 in, on a ramp with a shadow; courses from a light flat")
+    print("| inches | courses in the height | tone RMS, bias, worst % | s of processor | crosshatch |")
+    print("| --- | --- | --- | --- | --- |")
+    from tests.textures.test_textures import coverage, period
+
+    brick, crosshatch = find_texture("brick"), find_texture("crosshatch")
+    for inches in (2, 4, 8, 16):
+        n = max(200, 144 * inches)
+        y, x = np.mgrid[0 : 2 * n // 3, 0:n] / n
+        tone = 0.08 + 0.55 * x + 0.3 * np.exp(-30 * ((x - 0.3) ** 2 + (y - 0.3) ** 2))
+        size = 72.0 * inches, 48.0 * inches
+        times = [time.process_time()]
+        strokes = blast(tone, *size, None, brick, natural_pt=288, threads=1)
+        times.append(time.process_time())
+        blast(tone, *size, None, crosshatch, threads=1)
+        times.append(time.process_time())
+        rms, bias, worst = measures.tone_figures(strokes, tone)
+        flat = blast(np.full((160, 240), 0.12), *size, None, brick, natural_pt=288, device_dpi=None)
+        courses = 960 / period(coverage(flat, 960, 1440).mean(axis=1))
+        spent, other = np.diff(times)
+        print(
+            f"| {inches} | {courses:.1f} | {rms:.2f}, {bias:+.2f}, {worst:.1f} | {spent:.2f} | {other:.2f} |",
+            flush=True,
+        )
+
+
+PARTS = {"sizes": sizes, "similarity": similarity, "wall": wall}
+
+
+def main() -> None:
+    words = sys.argv[1:]
+    at = words.index("--") if "--" in words else len(words)
+    with tempfile.TemporaryDirectory() as folder:
+        for part in words[:at] or PARTS:
+            PARTS[part](words[at + 1 :] or list(NAMES), Path(folder))
+
+
+if __name__ == "__main__":
+    main()
