@@ -3,7 +3,8 @@
 
 FOLDER must hold the photographs and scenes (see the Makefile). Each figure is made by the commands that a
 user has, from illustrations that are written to FOLDER as they go: *.illustration.json, *.penink, *.eps.
-figures.pdf and figures.png are the page, table1.md the table. PENINK and GS name the programs.
+figures.pdf and figures.png are the page, sizes.pdf and sizes.png one of walls and portraits, table1.md the
+table. PENINK and GS name the programs.
 """
 
 import json
@@ -171,6 +172,27 @@ def textures(s: Studio) -> None:
         s.print(f"small-{texture}", f"small-{texture}", round(SWATCH / CUP[2], 4))
 
 
+WALLS, PORTRAITS = (2, 4, 8, 16), (1, 2, 6, 24)  # inches
+
+
+def every_size(s: Studio) -> None:
+    """A brick wall and a portrait on a stamp, on a page and on a poster; the wall as it was before it grew, too."""
+    w, h = 240, 96
+    ramp = bytes(round(235 - 150 * x / w - 40 * y / h) for y in range(h) for x in range(w))
+    (s.folder / "wall.pgm").write_bytes(b"P5\n%d %d\n255\n" % (w, h) + ramp)
+    s.penink("texture", "show", "--json", "brick", "-o", "brick.texture.json")
+    brick = json.loads((s.folder / "brick.texture.json").read_text())
+    del brick["scales"]
+    brick["strokes"] = [stroke for stroke in brick["strokes"] if stroke.get("scale", [0])[0] <= 1]
+    (s.folder / "bricks.texture.json").write_text(json.dumps(brick))
+    for inches in WALLS:
+        s.blast("wall.pgm", f"wall-before-{inches}", inches, "--texture", "bricks.texture.json")
+        s.blast("wall.pgm", f"wall-{inches}", inches, "--texture", "brick", "--natural", "4in")
+    s.penink("draw", "astronaut.png", "-o", "face.penink")
+    for inches in PORTRAITS:
+        s.print("face", f"face-{inches}", inches)
+
+
 # ------------------------------------------------------------------- the page
 
 
@@ -237,13 +259,14 @@ class Sheet:
             )
         self.out.append(f"grestore gsave 0.4 setlinewidth {x:.2f} {bottom:.2f} {side:g} {side:g} rectstroke grestore\n")
 
-    def write(self, folder: Path) -> None:
-        """figures.ps, figures.pdf and figures.png."""
-        (folder / "figures.ps").write_text("".join(self.out) + "showpage\n%%EOF\n", "latin-1")
+    def write(self, folder: Path, name: str) -> None:
+        """NAME.ps, NAME.pdf and NAME.png."""
+        (folder / f"{name}.ps").write_text("".join(self.out) + "showpage\n%%EOF\n", "latin-1")
         common = [GS, "-q", "-dSAFER", "-dBATCH", "-dNOPAUSE"]
         png = [*common, "-sDEVICE=pnggray", "-r150", "-dGraphicsAlphaBits=4", "-dTextAlphaBits=4"]
-        for command, name in ((["-sDEVICE=pdfwrite"], "figures.pdf"), (png[5:], "figures.png")):
-            subprocess.run([*common, *command, f"-sOutputFile={name}", "figures.ps"], cwd=folder, check=True)
+        for command, ending in ((["-sDEVICE=pdfwrite"], "pdf"), (png[5:], "png")):
+            to = f"-sOutputFile={name}.{ending}"
+            subprocess.run([*common, *command, to, f"{name}.ps"], cwd=folder, check=True)
 
 
 def compose(folder: Path) -> None:
@@ -299,19 +322,45 @@ def compose(folder: Path) -> None:
         else:
             sheet.picture(x, y, folder / f"close-{panel}.pgm", side)
         sheet.text(x, y + side + 18, caption)
-    sheet.write(folder)
+    sheet.write(folder, "figures")
+
+
+def compose_sizes(folder: Path) -> None:
+    """The page of `every_size`: walls all as wide as one another, portraits as they are, the poster at a quarter."""
+    inch, width = 72.0, 4.1
+    sheet = Sheet(19.2 * inch, 13.6 * inch)
+    left, y = MARGIN, MARGIN + 22
+    sheet.text(left, y, "One wall and one portrait, from a stamp to a poster", "title")
+    y += 26
+    for prefix, caption in (("wall-before", "of bricks of one size"), ("wall", "that grows")):
+        for k, inches in enumerate(WALLS):
+            x = left + k * (width + 0.3) * inch
+            _, h = sheet.drawing(x, y, folder / f"{prefix}-{inches}.eps", width * inch)
+            sheet.text(x, y + h + 18, f"A wall {caption}, {inches} in wide, shown at {width} in.")
+        y += h + 44
+    size = (folder / "face.penink").stat().st_size
+    x = left
+    for inches in PORTRAITS:
+        shown = min(inches, 6)
+        w, h = sheet.drawing(x, y, folder / f"face-{inches}.eps", shown * inch)
+        sheet.text(x, y + h + 18, f"{inches} in" + (", shown at 6 in" if shown < inches else ""))
+        x += w + 22
+    sheet.text(left, y + 6 * inch + 44, f"Four drawings of one file of {size} bytes.")
+    sheet.write(folder, "sizes")
 
 
 def main() -> None:
     folder = Path(sys.argv[1])
     studio = Studio(folder)
     with ThreadPoolExecutor(2) as pool:
-        made = [pool.submit(figure, studio) for figure in (scales, billiard, portrait, with_and_without, textures)]
+        figures = (scales, billiard, portrait, with_and_without, textures, every_size)
+        made = [pool.submit(figure, studio) for figure in figures]
         keys(studio)
         close_up(studio)
         for figure in made:
             figure.result()
     compose(folder)
+    compose_sizes(folder)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""Bytes of archives and what they show, walls at four sizes: ``python -m tests.benchmarks.archives [PART …] [-- PHOTO …]``.
+"""Bytes of archives and what they show; walls: ``python -m tests.benchmarks.archives [PART …] [-- PHOTO …]``.
 
 sizes        bytes of `draw -o x.penink` of half a megapixel, by members, encoding and decoding; without directions
              and lines in the style `true`
@@ -80,7 +80,7 @@ def sizes(names: list[str], folder: Path) -> None:
 
 
 def before(name: str, folder: Path) -> Path:
-    """The archive of the same photograph as it was: all edges, RMS 8, 64 levels, 96 samples of directions, all lines."""
+    """The archive of the same photograph as it was: all edges and lines, RMS 8, 64 levels, a field of 96 samples."""
     photo, f = (
         photograph(name, folder),
         {k: folder / k for k in ("g.pgm", "e.json", "l.json", "d.pgm", "s.pgm", "r.pgm")},
