@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy import ndimage
 
-from penink_cli.ground.masks import distance, labelled
+from penink_cli.ground.masks import distance, filled, grown, labelled, opened, part_at
 
 
 @pytest.mark.parametrize("share", [0.0, 0.1, 0.4, 0.7, 0.97])
@@ -18,6 +18,21 @@ def test_parts_and_distances_are_scipys(share, shape):
     assert boxes.tolist() == sides
     if not mask.all():
         assert np.array_equal(distance(mask), ndimage.distance_transform_edt(mask))
+
+
+@pytest.mark.parametrize("share", [0.0, 0.2, 0.5, 0.8, 1.0])
+@pytest.mark.parametrize("radius", [1.0, 1.5, 2.0, 3.7])
+def test_masks_are_filled_opened_and_grown_as_scipys(share, radius):
+    rng = np.random.default_rng(round(100 * share))
+    mask = ndimage.binary_dilation(rng.random((31, 44)) < share / 4, iterations=3)
+    assert np.array_equal(filled(mask), ndimage.binary_fill_holes(mask))
+    r = int(radius)
+    y, x = np.ogrid[-r : r + 1, -r : r + 1]
+    assert np.array_equal(opened(mask, radius), ndimage.binary_opening(mask, x * x + y * y <= radius * radius))
+    assert np.array_equal(grown(mask, r), ndimage.binary_dilation(mask, iterations=r))
+    part, _ = ndimage.label(mask)
+    for row, column in ((0, 0), (15, 20), (30, 43)):
+        assert np.array_equal(part_at(mask, row, column), (part == part[row, column]) & mask)
 
 
 def test_nothing_is_near_where_nothing_is_outside():

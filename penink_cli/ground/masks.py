@@ -25,7 +25,7 @@ def labelled(mask: Mask) -> tuple[npt.NDArray[np.int32], npt.NDArray[np.int32]]:
     (np.int32(1), [[0, 3, 2, 5]])
     """
     part = np.empty(mask.shape, np.int32)
-    box = np.empty((_masks.label(np.ascontiguousarray(mask).view(np.uint8), part), 4), np.int32)
+    box = np.empty((_masks.label(_octets(mask), True, part), 4), np.int32)
     _masks.boxes(part, box)
     return part, box
 
@@ -37,5 +37,60 @@ def distance(mask: Mask) -> Floats:
     [[0.0, 1.0, 2.0]]
     """
     out = np.empty(mask.shape)
-    _masks.distance(np.ascontiguousarray(mask).view(np.uint8), out)
+    _masks.distance(_octets(mask), out)
     return out
+
+
+def part_at(mask: Mask, row: int, column: int) -> Mask:
+    """The part of the mask (h, w) that this pixel is in, of pixels that touch at their sides; nothing where it is out.
+
+    >>> part_at(np.array([[True, True, False, True]]), 0, 1).tolist()
+    [[True, True, False, False]]
+    """
+    part = np.empty(mask.shape, np.int32)
+    _masks.label(_octets(mask), False, part)
+    return (part == part[row, column]) & mask
+
+
+def filled(mask: Mask) -> Mask:
+    """The mask (h, w) without its holes: with all that no way over sides leads to from beyond.
+
+    >>> filled(np.array([[0, 1, 0], [1, 0, 1], [0, 1, 0]]) > 0).astype(int).tolist()
+    [[0, 1, 0], [1, 1, 1], [0, 1, 0]]
+    """
+    part = np.empty(mask.shape, np.int32)
+    outside = np.zeros(_masks.label(_octets(~mask), False, part) + 1, np.bool_)
+    for side in (part[0], part[-1], part[:, 0], part[:, -1]):
+        outside[side] = True
+    outside[0] = False
+    return ~outside[part]
+
+
+def opened(mask: Mask, radius: float) -> Mask:
+    """What discs of that radius (pixels) cover that lie in the mask (h, w) and its frame.
+
+    >>> opened(np.array([[1, 0, 0, 0], [1, 0, 1, 0], [1, 1, 1, 1], [0, 0, 1, 0]]) > 0, 1.0).astype(int).tolist()
+    [[0, 0, 0, 0], [0, 0, 1, 0], [0, 1, 1, 1], [0, 0, 1, 0]]
+    """
+    centres = distance(np.pad(mask, 1))[1:-1, 1:-1] > radius
+    return distance(~centres) <= radius
+
+
+def grown(mask: Mask, steps: int) -> Mask:
+    """The mask (h, w) and what so many steps over sides lead to.
+
+    >>> grown(np.array([[True, False, False, False]]), 2).tolist()
+    [[True, True, True, False]]
+    """
+    for _ in range(steps):
+        wider = mask.copy()
+        wider[1:] |= mask[:-1]
+        wider[:-1] |= mask[1:]
+        wider[:, 1:] |= mask[:, :-1]
+        wider[:, :-1] |= mask[:, 1:]
+        mask = wider
+    return mask
+
+
+def _octets(mask: Mask) -> npt.NDArray[np.uint8]:
+    return np.ascontiguousarray(mask).view(np.uint8)

@@ -11,10 +11,9 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from scipy import ndimage
 
 from penink_cli.composition.filters import blurred
-from penink_cli.ground import exact
+from penink_cli.ground import exact, masks
 from penink_cli.ground.model import Floats
 from penink_cli.lines.oriented import Picture
 
@@ -112,16 +111,15 @@ def _spot(sharp: Picture, picture: Picture, taken: np.ndarray, i: int, j: int, r
     bare = window < core + 0.5 * contrast
     if np.count_nonzero(bare & rim) > (ATTACHED if radius >= LEAST_ATTACHED else OPEN) * len(ring):
         return None
-    filled = ndimage.binary_fill_holes(bare)  # a catchlight is part of the pupil
-    thick = ndimage.binary_opening(filled, _disc(max(1.0, THICK * radius)))
-    part, _ = ndimage.label(thick)
-    mine = part == part[i - top, j - left]
-    if not part[i - top, j - left] or (mine & taken[top : i + r + 1, left : j + r + 1]).any():
+    filled = masks.filled(bare)  # a catchlight is part of the pupil
+    thick = masks.opened(filled, max(1.0, THICK * radius))
+    mine = masks.part_at(thick, i - top, j - left)
+    if not thick[i - top, j - left] or (mine & taken[top : i + r + 1, left : j + r + 1]).any():
         return None
     if (thick & rim).any() or np.count_nonzero(mine & ~bare) > HOLLOW * np.count_nonzero(mine):
         return None
-    outer = ndimage.binary_dilation(mine, iterations=3) & ~ndimage.binary_dilation(mine, iterations=2) & ~filled
-    inner = mine & ~ndimage.binary_erosion(mine, border_value=1)
+    outer = masks.grown(mine, 3) & ~masks.grown(mine, 2) & ~filled
+    inner = mine & masks.grown(~mine, 1)
     if not outer.any():
         return None
     crisp = (_mean(window[outer]) - _mean(window[inner])) / contrast
@@ -146,12 +144,6 @@ def _spot(sharp: Picture, picture: Picture, taken: np.ndarray, i: int, j: int, r
     ex, ey = (xx - yy + root, 2 * xy) if xx > yy else (2 * xy, yy - xx + root)
     size = 2 * (major - minor) / math.sqrt(ex * ex + ey * ey)
     return Spot(*middle, ex * size, ey * size, 4 * minor, contrast, crisp, dark)
-
-
-def _disc(radius: float) -> np.ndarray:
-    r = math.floor(radius)
-    y, x = np.ogrid[-r : r + 1, -r : r + 1]
-    return np.asarray(x * x + y * y <= radius * radius)
 
 
 def _mean(values: np.ndarray) -> float:

@@ -6,10 +6,10 @@ from libc.stdlib cimport free
 from penink_cli.ground._compiled.memory cimport room
 
 
-def label(const unsigned char[:, ::1] mask, int[:, ::1] part) -> int:
-    """Number the parts of a mask (h, w) whose pixels touch, corners too: 1 … in the order of their first pixels.
+def label(const unsigned char[:, ::1] mask, bint corners, int[:, ::1] part) -> int:
+    """Number the parts of a mask (h, w) whose pixels touch: 1 … in the order of their first pixels.
 
-    part: (h, w) the number of each pixel's, 0 for none. Returns how many there are.
+    corners: whether those touch that have a corner in common. part: (h, w) the number of each pixel's, 0 for none. Returns how many there are.
     """
     cdef Py_ssize_t h = mask.shape[0], w = mask.shape[1], i, j, k, top, at, count = 0
     cdef int number = 0
@@ -33,6 +33,8 @@ def label(const unsigned char[:, ::1] mask, int[:, ::1] part) -> int:
                         at = waiting[count]
                         for top in range(max(0, at // w - 1), min(h, at // w + 2)):
                             for k in range(max(0, at % w - 1), min(w, at % w + 2)):
+                                if not corners and top != at // w and k != at % w:
+                                    continue
                                 if mask[top, k] and not part[top, k]:
                                     part[top, k] = number
                                     waiting[count] = top * w + k

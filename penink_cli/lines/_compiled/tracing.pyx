@@ -48,13 +48,17 @@ def peaks(const float[:, :, ::1] bank, const double[:, ::1] unit, float high, in
     cdef Py_ssize_t k, i, j, found = 0
     cdef float c
     cdef double nx, ny
+    cdef const float* here
+    cdef const float* after
+    cdef const float* before
     with nogil:
         for k in range(n):
             nx, ny = -unit[4 * k, 1], unit[4 * k, 0]
             for i in range(2, h - 2):
+                here, after, before = &bank[k, i, 0], &bank[(k + 1) % n, i, 0], &bank[(k + n - 1) % n, i, 0]
                 for j in range(2, w - 2):
-                    c = bank[k, i, j]
-                    if c < high or bank[(k + 1) % n, i, j] > c or bank[(k + n - 1) % n, i, j] >= c:
+                    c = here[j]
+                    if c < high or after[j] > c or before[j] >= c:
                         continue
                     if _at(&bank[k, 0, 0], h, w, j + nx, i + ny) > c or _at(&bank[k, 0, 0], h, w, j - nx, i - ny) >= c:
                         continue
