@@ -133,7 +133,8 @@ def breadth(tone: Floats, where: Ints, nx: Floats, ny: Floats, cell_pt: float) -
     rows, columns = where[:, 0], where[:, 1]
     x, y = columns.astype(np.float64), rows.astype(np.float64)
     ax, ay = nx[rows, columns], ny[rows, columns]
-    across = np.stack([bilinear(tone, x + ax * d, y + ay * d) for d in np.arange(-4.0, 4.25, 0.5)])
+    away = np.arange(-4.0, 4.25, 0.5)[:, None]
+    across = bilinear(tone, x + ax * away, y + ay * away)
     ground = np.maximum(across[:5].min(axis=0), across[-5:].min(axis=0))
     return float(np.mean(np.maximum(across - ground, 0.0).sum(axis=0) * 0.5 / np.maximum(1.0 - ground, 0.2))) * cell_pt
 

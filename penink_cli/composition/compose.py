@@ -29,6 +29,7 @@ _EYE_PT, _BROAD_PT, _AROUND_PT = 0.7, 4.0, 9.0  # activity: what lies between th
 _BACKGROUND, _BUSY, _MOST_BUSY = 0.25, 0.8, 1.5  # the weight of places without activity; its quantile that counts 1
 _PAGE, _PAGE_PAPER = 0.5, 0.985  # a picture more than half of which is so light is a page: its paper stays
 _INK, _PAPER = 0.05, 0.95  # what is darker is solid, what is lighter is bare
+_TELLING = 1_500_000  # values, more or less, that tell the range of a photo
 _NARROW = 0.35  # of the range of grey: a photograph that uses no more is told of
 
 
@@ -145,9 +146,13 @@ def points(grey: Picture, pt: float, fade: Picture | None, threads: int) -> tupl
 
 
 def narrow_range(photo: GreyImage | ColourImage) -> float | None:
-    """The share of the range of values that a photo uses, where it is small; one of a single value says nothing."""
-    counts = np.bincount(photo.values.ravel(), minlength=photo.maxval + 1)
-    upto = np.cumsum(counts) / photo.values.size
+    """The share of the range of values that a photo uses, where it is small; one of a single value says nothing.
+
+    Of a large photo some rows tell it.
+    """
+    values = photo.values[:: max(1, photo.values.size // _TELLING)]
+    counts = np.bincount(values.ravel(), minlength=photo.maxval + 1)
+    upto = np.cumsum(counts) / values.size
     used = int(np.searchsorted(upto, 1 - _POINTS)) - int(np.searchsorted(upto, _POINTS))
     return used / photo.maxval if 0 < used < _NARROW * photo.maxval else None
 

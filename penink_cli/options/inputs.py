@@ -30,6 +30,7 @@ NAMED = {"white": (255, 255, 255), "black": (0, 0, 0), "grey": (128, 128, 128)}
 _OPTIONS = ("background", "profile", "strict", "lenient")
 _META = "penink.photo"
 _photos: dict[str | None, tuple[changes.State, ColourImage | GreyImage]] | None = None  # remembered, by their paths
+_edges: tuple[changes.State, EdgeList] | None = None  # the last ones read from the workbench, and their text
 MAX_MEMBER = 1 << 28  # bytes of a file that a manifest names
 
 
@@ -160,12 +161,12 @@ def read_to_blast(path: str | None, max_pixels: int) -> GreyImage:
 @contextmanager
 def remembering_photos() -> Iterator[None]:
     """While the block runs, a photograph that several filters of one process read is decoded once."""
-    global _photos  # noqa: PLW0603
+    global _photos, _edges  # noqa: PLW0603
     before, _photos = _photos, {}
     try:
         yield
     finally:
-        _photos = before
+        _photos, _edges = before, None
 
 
 def _remembered(path: str | None, read: Callable[[], ColourImage | GreyImage]) -> ColourImage | GreyImage:
@@ -224,12 +225,20 @@ def read_image_or_strokes(path: str | None, max_pixels: int) -> GreyImage | Stro
 
 
 def read_edges(path: str | None, max_pixels: int = 0) -> EdgeList | None:
-    """A valid arrangement of discontinuity edges; None where no file is given. max_pixels allows more than 80 MB."""
+    """A valid arrangement of discontinuity edges; None where no file is given. max_pixels allows more than 80 MB.
+
+    What one filter of this process has read from the workbench the next one is given.
+    """
+    global _edges  # noqa: PLW0603
     if path is None:
         return None
     from penink_cli.formats import edge_list
     from penink_cli.geometry import validity
 
+    text = streams.state(path) if streams.on_bench(path) else None
+    if text is not None and _edges is not None and _edges[0] == text:
+        changes.note(path, text)
+        return _edges[1]
     source = streams.source_name(path)
     with streams.reading(path) as stream:
         edges = edge_list.read(stream, source, max_pixels)
@@ -237,6 +246,8 @@ def read_edges(path: str | None, max_pixels: int = 0) -> EdgeList | None:
         validity.check(edges)
     except PeninkError as error:
         raise error.from_source(source) from None
+    if text is not None:
+        _edges = text, edges
     return edges
 
 

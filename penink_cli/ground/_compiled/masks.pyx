@@ -9,7 +9,8 @@ from penink_cli.ground._compiled.memory cimport room
 def label(const unsigned char[:, ::1] mask, bint corners, int[:, ::1] part) -> int:
     """Number the parts of a mask (h, w) whose pixels touch: 1 … in the order of their first pixels.
 
-    corners: whether those touch that have a corner in common. part: (h, w) the number of each pixel's, 0 for none. Returns how many there are.
+    corners: whether those touch that have a corner in common. part: (h, w) the number of each pixel's, 0 for none.
+    Returns how many there are.
     """
     cdef Py_ssize_t h = mask.shape[0], w = mask.shape[1], i, j, k, top, at, count = 0
     cdef int number = 0
