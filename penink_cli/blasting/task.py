@@ -82,7 +82,7 @@ class Begun:
             return None
         from penink_cli.directions.reading import at_size  # the reconstruction is not needed otherwise
 
-        field = at_size(task.directions, task.edges, sheet.rows, sheet.columns, sheet.threads)
+        field = at_size(task.directions, task.edges, sheet.rows, sheet.columns, sheet.threads, confident=False)
         return np.asarray(field.cos2, np.float32), np.asarray(field.sin2, np.float32)
 
     def one_angle(self) -> tuple[Cells, Cells]:

@@ -22,6 +22,7 @@ def at_size(
     columns: int,
     threads: int | None = None,
     window: Window | None = None,
+    confident: bool = True,
 ) -> Directions:
     """The field at the centres of rows × columns pixels that fill the frame: unit vectors, float32.
 
@@ -30,6 +31,7 @@ def at_size(
 
     edges: the arrangement of the picture, across which nothing is mixed; None for none.
     window: x, y, width, height of the pixels wanted, all unless given. No value depends on it, nor on threads.
+    confident: whether the confidence is wanted too, half as much work again; without it neighbours alone tell it.
     """
     x, y, width, height = check_window(window, columns, rows)
     h, w = directions.cos2.shape
@@ -48,7 +50,9 @@ def at_size(
     length = np.sqrt(cos2 * cos2 + sin2 * sin2)
     known = length > NOTHING
     divisor = np.where(known, length, 1.0)
-    confidence = np.clip(plane(directions.confidence), 0, 1) * np.where(known, np.minimum(length, 1.0), 0.0)
+    confidence = np.where(known, np.minimum(length, 1.0), 0.0)
+    if confident:
+        confidence *= np.clip(plane(directions.confidence), 0, 1)
     return Directions(
         np.where(known, cos2 / divisor, 1.0).astype(np.float32),
         np.where(known, sin2 / divisor, 0.0).astype(np.float32),
