@@ -30,6 +30,7 @@ from penink_cli.formats._compiled import stroke_lines as _stroke_lines
 from penink_cli.ground.errors import FormatError, LimitError, ParameterError
 from penink_cli.ground.model import Strokes
 
+MOST_SEED = 2**63 - 1
 LIMIT = 1e7  # points; 3.5 km. Keeps thousandths exact and every format's integers within 32 bits
 MAX_LINE = 16 << 20
 MAX_POINTS = 50_000_000  # of all strokes: 0.8 GB
@@ -130,32 +131,21 @@ def _blocks(stream: BinaryIO) -> Iterator[bytes]:
 
 def _header(line: bytes) -> dict[str, Any]:
     """The header's members, by their names in Strokes."""
-    value = _json(line, 1)
-    if not isinstance(value, dict) or value.get("format") != "penink-strokes":
-        raise FormatError('line 1: no header {"format": "penink-strokes", "version": 1, …}')
-    if "version" not in value:
-        raise FormatError("line 1: version missing, only 1 is known")
-    version = value["version"]
-    if isinstance(version, bool) or not isinstance(version, int) or version != 1:
-        raise FormatError(f"line 1: version {_shown(version)}, only 1 is known")
+    value = strict_json.header(_json(line, 1), "penink-strokes", "line 1")
     header: dict[str, Any] = {}
     for side in ("width", "height"):
         header[side] = _size(value, side, 1)
     for name in ("layer", "texture"):
-        header[name] = value.get(name)
-        if not isinstance(value.get(name, ""), str):
-            raise FormatError(f"line 1: {name} {strict_json.quoted(value[name])} is not a string")
-    header["seed"] = value.get("seed")
-    if type(seed := value.get("seed", 0)) is not int or abs(seed) >= 1 << 63:
-        raise FormatError(f"line 1: seed {strict_json.quoted(seed)} is not a whole number of 64 bits")
+        header[name] = strict_json.text(value[name], f"line 1: {name}") if name in value else None
+    header["seed"] = None
+    if "seed" in value:
+        header["seed"] = strict_json.whole(value["seed"], "line 1: seed", -MOST_SEED, MOST_SEED)
     color = header["color"] = value.get("color")
     if "color" in value:
         strict_json.colour(color, "line 1: color")
     dpi = header["device_dpi"] = value.get("device_dpi")
-    if dpi is not None and not (_is_number(dpi) and dpi > 0):
-        raise FormatError(
-            f"line 1: device_dpi {strict_json.quoted(dpi)} is not null or a number above 0 and up to {LIMIT:.0f}"
-        )
+    if dpi is not None:
+        _size(value, "device_dpi", 1)
     return header
 
 
@@ -163,18 +153,16 @@ def _stroke(line: bytes, line_number: int) -> tuple[float, np.ndarray, np.ndarra
     """Width, control points (3k + 1, 2) and, where it has them, widths at the knots (k + 1,) of one line."""
     value = _json(line, line_number)
     if not isinstance(value, dict):
-        raise FormatError(f"line {line_number}: {_shown(value)} is not a stroke")
+        raise FormatError(f"line {line_number}: {strict_json.quoted(value)} is not a stroke")
     width = _size(value, "width", line_number)
-    if "points" not in value:
-        raise FormatError(f"line {line_number}: points missing")
-    points = value["points"]
+    points = strict_json.member(value, "points", f"line {line_number}")
     if not isinstance(points, list) or len(points) % 3 != 1:
-        found = f"{len(points)} points" if isinstance(points, list) else f"points {_shown(points)}"
+        found = f"{len(points)} points" if isinstance(points, list) else f"points {strict_json.quoted(points)}"
         raise FormatError(f"line {line_number}: {found}; a stroke has 3k + 1 of them, a list of [x, y]")
-    for k, point in enumerate(points):
-        if not isinstance(point, list) or len(point) != 2 or not all(map(_is_number, point)):
-            raise FormatError(f"line {line_number}: point {k}: {_shown(point)} is not [x, y] within ±{LIMIT:.0f}")
-    return width, np.array(points, np.float64), _at_knots(value, width, (len(points) + 2) // 3, line_number)
+    control = strict_json.pairs(points, f"line {line_number}: points", f"line {line_number}: point")
+    for k in np.flatnonzero((np.abs(control) > LIMIT).any(axis=1)):
+        raise FormatError(f"line {line_number}: point {k}: {strict_json.quoted(points[k])} is beyond ±{LIMIT:.0f}")
+    return width, control, _at_knots(value, width, (len(points) + 2) // 3, line_number)
 
 
 def _at_knots(value: dict[str, Any], width: float, count: int, line_number: int) -> np.ndarray | None:
@@ -183,13 +171,10 @@ def _at_knots(value: dict[str, Any], width: float, count: int, line_number: int)
         return None
     widths = value["widths"]
     if not isinstance(widths, list) or len(widths) != count:
-        found = f"{len(widths)} widths" if isinstance(widths, list) else f"widths {_shown(widths)}"
+        found = f"{len(widths)} widths" if isinstance(widths, list) else f"widths {strict_json.quoted(widths)}"
         raise FormatError(f"line {line_number}: {found}; a stroke of {count - 1} segments has {count}, one a knot")
     for k, number in enumerate(widths):
-        if not _is_number(number) or number < 0:
-            raise FormatError(
-                f"line {line_number}: width {k} of widths: {_shown(number)} is not a number from 0 to {LIMIT:.0f}"
-            )
+        strict_json.number(number, f"line {line_number}: width {k} of widths", 0, LIMIT)
     mean = math.fsum(widths) / count
     if not _plain_json.agree(width, mean):
         raise FormatError(f"line {line_number}: width {width:g} is not the mean of its widths, {mean:g}")
@@ -197,26 +182,15 @@ def _at_knots(value: dict[str, Any], width: float, count: int, line_number: int)
 
 
 def _size(value: dict[str, Any], name: str, line_number: int) -> float:
-    if name not in value:
-        raise FormatError(f"line {line_number}: {name} missing")
-    number = value[name]
-    if not _is_number(number) or not number > 0:
-        raise FormatError(f"line {line_number}: {name} {_shown(number)} is not a number above 0 and up to {LIMIT:.0f}")
-    return float(number)
-
-
-def _is_number(value: Any) -> bool:
-    return isinstance(value, (int, float)) and not isinstance(value, bool) and -LIMIT <= value <= LIMIT
+    place = f"line {line_number}"
+    number = strict_json.number(strict_json.member(value, name, place), f"{place}: {name}", -LIMIT, LIMIT)
+    if not number > 0:
+        raise FormatError(f"{place}: {name} is {strict_json.quoted(value[name])}; a number above 0 is needed")
+    return number
 
 
 def _json(line: bytes, line_number: int) -> Any:
     return strict_json.loads(line, None, f"line {line_number}")
-
-
-def _shown(value: Any) -> str:
-    """A value as found, shortened."""
-    text = json.dumps(value)
-    return text if len(text) <= 60 else text[:57] + "..."
 
 
 class Sink(Protocol):

@@ -21,6 +21,7 @@ import numpy as np
 
 from penink_cli.formats import strict_json
 from penink_cli.formats.strokes import LIMIT, Sink
+from penink_cli.ground.decimals import plain
 from penink_cli.ground.errors import FormatError
 from penink_cli.ground.model import Engraving, Floats, HatchLayer, Ints, Scales, Strokes, Texture
 
@@ -245,10 +246,10 @@ def _engraving(value: Any) -> Engraving | None:
 
 def _engraving_text(engraving: Engraving) -> str:
     """The member of the file."""
-    members = [(name, _fixed(getattr(engraving, field), 4)) for name, (field, _, _) in _ENGRAVING.items()]
+    members = [(name, plain(getattr(engraving, field), 4)) for name, (field, _, _) in _ENGRAVING.items()]
     members += [(name, json.dumps(getattr(engraving, name))) for name in ("along", "blunt")]
     if engraving.centre is not None:
-        members.append(("centre", "[{}, {}]".format(*(_fixed(v, 4) for v in engraving.centre))))
+        members.append(("centre", "[{}, {}]".format(*(plain(v, 4) for v in engraving.centre))))
     if engraving.lines is not None:
         members.append(("lines", str(engraving.lines)))
     return "{" + ", ".join(f'"{name}": {text}' for name, text in members) + "}"
@@ -258,7 +259,7 @@ def write(out: Sink, texture: Texture) -> None:
     """Write a texture, one stroke a line; coordinates in thousandths of a point."""
     s = texture.strokes
     head = f'{{"format": "penink-texture", "version": 1, "name": {json.dumps(texture.name)}'
-    head += f', "width": {_fixed(s.width, 3)}, "height": {_fixed(s.height, 3)}'
+    head += f', "width": {plain(s.width, 3)}, "height": {plain(s.height, 3)}'
     if texture.whole:
         head += ', "whole": true'
     if texture.oriented:
@@ -270,7 +271,7 @@ def write(out: Sink, texture: Texture) -> None:
             return [(name, value) for name, value in values if value is not None]
 
         layers = ",\n  ".join(
-            "{" + ", ".join(f'"{name}": {_fixed(value, 4)}' for name, value in members(layer)) + "}"
+            "{" + ", ".join(f'"{name}": {plain(value, 4)}' for name, value in members(layer)) + "}"
             for layer in texture.layers
         )
         head += f', "layers": [\n  {layers}]'
@@ -278,7 +279,7 @@ def write(out: Sink, texture: Texture) -> None:
         head += f', "engraving": {_engraving_text(texture.engraving)}'
     if texture.scales is not None:
         scales = texture.scales
-        head += f', "scales": {{"natural": {_fixed(scales.natural_pt, 3)}, "least": {_fixed(scales.least_pt, 3)}'
+        head += f', "scales": {{"natural": {plain(scales.natural_pt, 3)}, "least": {plain(scales.least_pt, 3)}'
         head += f', "fill": {json.dumps(scales.fill)}}}'
     out.write((head + ', "strokes": [\n').encode("ascii"))
     lines = _stroke_lines(s, texture.priorities)
@@ -293,15 +294,9 @@ def write(out: Sink, texture: Texture) -> None:
 def _stroke_lines(strokes: Strokes, priorities: Floats, spans: Floats | None = None) -> list[str]:
     lines = []
     for i in range(len(strokes)):
-        control = ", ".join(f"[{_fixed(x, 3)}, {_fixed(y, 3)}]" for x, y in strokes[i].tolist())
-        line = f' {{"priority": {_fixed(float(priorities[i]), 4)}, "width": {_fixed(float(strokes.widths[i]), 4)}'
+        control = ", ".join(f"[{plain(x, 3)}, {plain(y, 3)}]" for x, y in strokes[i].tolist())
+        line = f' {{"priority": {plain(float(priorities[i]), 4)}, "width": {plain(float(strokes.widths[i]), 4)}'
         if spans is not None:
-            line += ', "scale": [{}, {}]'.format(*(_fixed(float(v), 4) for v in spans[i]))
+            line += ', "scale": [{}, {}]'.format(*(plain(float(v), 4) for v in spans[i]))
         lines.append(line + f', "points": [{control}]}}')
     return lines
-
-
-def _fixed(value: float, decimals: int) -> str:
-    """A number with a fixed number of decimals, without the zeros at their end and without a minus zero."""
-    text = f"{value:.{decimals}f}".rstrip("0").rstrip(".")
-    return "0" if text == "-0" else text

@@ -11,6 +11,8 @@ import zlib
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
+from penink_cli.ground.decimals import plain
+
 if TYPE_CHECKING:  # the help text needs none of it
     import numpy as np
 
@@ -156,4 +158,4 @@ def _outlines(strokes: Strokes, page: Page) -> bytes:
 
 def _pens(pens: np.ndarray) -> list[bytes]:
     """Nothing, then what sets each pen."""
-    return [b"", *(f"{p / 10000:.4f}".rstrip("0").rstrip(".").encode() + b" w\n" for p in pens.tolist())]
+    return [b"", *(plain(p / 10000, 4).encode() + b" w\n" for p in pens.tolist())]

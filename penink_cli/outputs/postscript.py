@@ -27,6 +27,7 @@ import numpy as np
 import numpy.typing as npt
 
 from penink_cli.formats.strokes import Sink
+from penink_cli.ground.decimals import plain
 from penink_cli.ground.exact import length as length_of
 from penink_cli.ground.model import Floats, Ints, Strokes
 from penink_cli.outputs import swelling, words
@@ -419,9 +420,8 @@ def _ascii85(text: bytes) -> bytes:
 
 
 def _number(value: float, decimals: int = 3) -> bytes:
-    """Without needless zeros, never -0."""
-    text = f"{value:.{decimals}f}".rstrip("0").rstrip(".")
-    return b"0" if text == "-0" else text.encode("ascii")
+    """A number as PostScript's bytes."""
+    return plain(value, decimals).encode("ascii")
 
 
 def _text(name: str) -> bytes:

@@ -12,6 +12,7 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 
 from penink_cli.formats.strokes import Sink
+from penink_cli.ground.decimals import plain
 from penink_cli.ground.model import Floats, Ints, Strokes
 from penink_cli.outputs import inks, swelling, words
 from penink_cli.outputs.page import Page
@@ -30,7 +31,7 @@ def write(
     """
     colours = [colours[i] if i < len(colours) else inks.BLACK for i in range(len(layers))]
     blend = ' style="mix-blend-mode:multiply"' if inks.overprint(colours) else ""
-    width, height = _number(page.width * MM), _number(page.height * MM)
+    width, height = plain(page.width * MM, DECIMALS), plain(page.height * MM, DECIMALS)
     out.write(
         '<?xml version="1.0" encoding="UTF-8"?>\n'
         '<svg xmlns="http://www.w3.org/2000/svg" xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape"\n'
@@ -46,7 +47,7 @@ def write(
         pen = float(pens[np.argmax(counts)]) if len(pens) else 1.0
         out.write(
             f'<g id="layer{i + 1}" inkscape:groupmode="layer" inkscape:label={quoteattr(label)}\n'
-            f'   fill="none" stroke="{colour}" stroke-width="{_number(pen * MM, 4)}" '
+            f'   fill="none" stroke="{colour}" stroke-width="{plain(pen * MM, 4)}" '
             f'stroke-linecap="round" stroke-linejoin="round"{blend}>\n'.encode()
         )
         for start in range(0, len(layer), BATCH):
@@ -67,7 +68,7 @@ def _paths(layer: Strokes, start: int, stop: int, page: Page, usual: float) -> m
     numbers = _relative(layer.points[layer.first[start] : layer.first[stop]], first, page)
     pens, pen = np.unique(layer.widths[start:stop], return_inverse=True)
     begin = b'<path d="M'
-    ends = [b"" if p == usual else b' stroke-width="%s"' % _number(p * MM, 4).encode() for p in pens.tolist()]
+    ends = [b"" if p == usual else b' stroke-width="%s"' % plain(p * MM, 4).encode() for p in pens.tolist()]
     # A dot is a line of a micrometre: one without length is not drawn by all, and dropped by vpype.
     lines = [b'"%s/>\n%s' % (end, begin) for end in ends]
     table = [b" ", b"c", begin, *lines, *(b"h.001" + line for line in lines)]
@@ -105,7 +106,3 @@ def _xml(name: str) -> str:
 
 def _hex(value: float) -> str:
     return f"{round(value * 255):02x}"
-
-
-def _number(value: float, decimals: int = DECIMALS) -> str:
-    return f"{value:.{decimals}f}".rstrip("0").rstrip(".")

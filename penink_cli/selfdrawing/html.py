@@ -12,6 +12,7 @@ import zlib
 from typing import Any
 
 from penink_cli.blasting.screens import Screen
+from penink_cli.ground.decimals import plain
 from penink_cli.ground.model import Engraving, Illustration
 from penink_cli.selfdrawing import packer
 from penink_cli.selfdrawing.data import LayerData, is_sent, layers, tile_bytes
@@ -27,7 +28,7 @@ def write(illustration: Illustration, title: str, readable: bool = False, reload
     parts = layers(illustration)
     data = b"".join(map(_bytes, parts))
     program = "\n".join(packer.source(name) for name in SOURCES)
-    call = f"start({_number(illustration.width)},{_number(illustration.height)},{_layers(parts)},"
+    call = f"start({plain(illustration.width, 4)},{plain(illustration.height, 4)},{_layers(parts)},"
     if readable:
         script = f"{program}\nunpack({_quoted(data)}).then(bytes => {call}bytes));"
     else:
@@ -111,7 +112,3 @@ def _screen(screen: Screen, whole: bool) -> Any:
         "widens": round(screen.widens, 4),
         "strokes": len(screen.enters),
     }
-
-
-def _number(value: float) -> str:
-    return f"{value:.4f}".rstrip("0").rstrip(".")

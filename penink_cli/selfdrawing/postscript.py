@@ -8,8 +8,10 @@ restore, leaves the stacks as found and uses no operator that changes the device
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 
 from penink_cli.blasting.screens import Screen
+from penink_cli.ground.decimals import plain
 from penink_cli.ground.model import Engraving, Illustration
 from penink_cli.selfdrawing import packer
 from penink_cli.selfdrawing.data import LayerData, is_sent, layers, tile_bytes
@@ -28,7 +30,7 @@ def write(illustration: Illustration, packing: str = "flate") -> bytes:
     head = (
         "%!PS-Adobe-3.0 EPSF-3.0\n"
         f"%%BoundingBox: 0 0 {math.ceil(width)} {math.ceil(height)}\n"
-        f"%%HiResBoundingBox: 0 0 {_number(width)} {_number(height)}\n"
+        f"%%HiResBoundingBox: 0 0 {plain(width, 4)} {plain(height, 4)}\n"
         "%%Creator: penink\n"
         f"%%LanguageLevel: {3 if packing == 'flate' else 2}\n"
         "%%Pages: 1\n%%DocumentData: Clean7Bit\n%%EndComments\n%%Page: 1 1\n"
@@ -36,7 +38,7 @@ def write(illustration: Illustration, packing: str = "flate") -> bytes:
     )
     tail = "end restore\nshowpage\n%%Trailer\n%%EOF\n"
     program = "\n".join(packer.source(name) for name in SOURCES)
-    page = f"{_number(width)} {_number(height)} Page\n"
+    page = f"{plain(width, 4)} {plain(height, 4)} Page\n"
     picture = f"[ {' '.join(f'Layer{i}' for i in range(len(parts)))} ] Picture\n"
     if packing == "readable":
         body = program + page
@@ -81,20 +83,20 @@ def _closed(layer: LayerData) -> str:
     table = layer.table
     screens = " ".join(_screen(i, s) for i, s in enumerate(table.screens))
     return (
-        f"/OutlinePen {_number(layer.outline_pt)} def /Gamma {_number(layer.gamma)} def /Family {layer.family} def\n"
-        f"/LinePen {_number(layer.told.choice.pen_pt)} def /LineEven {_bool(layer.told.choice.even)} def\n"
+        f"/OutlinePen {plain(layer.outline_pt, 4)} def /Gamma {plain(layer.gamma, 4)} def /Family {layer.family} def\n"
+        f"/LinePen {plain(layer.told.choice.pen_pt, 4)} def /LineEven {_bool(layer.told.choice.even)} def\n"
         f"/engraving {_engraving(layer.engraving)} def\n"
-        f"{_number(table.pen_pt)} {_number(table.magnification)} [ {screens} ] Layer\nend\n"
+        f"{plain(table.pen_pt, 4)} {plain(table.magnification, 4)} [ {screens} ] Layer\nend\n"
     )
 
 
 def _engraving(kind: Engraving | None) -> str:
     if kind is None:
         return "null"
-    middle = "null null" if kind.centre is None else " ".join(map(_number, kind.centre))
+    middle = "null null" if kind.centre is None else _row(kind.centre)
     spacing = -kind.lines if kind.lines else kind.spacing_pt
-    numbers = " ".join(map(_number, (spacing, kind.finest_pt, kind.angle)))
-    return f"[ {numbers} {middle} {_number(kind.waver)} {_bool(kind.blunt)} ]"
+    numbers = _row((spacing, kind.finest_pt, kind.angle))
+    return f"[ {numbers} {middle} {plain(kind.waver, 4)} {_bool(kind.blunt)} ]"
 
 
 def _bool(value: bool) -> str:
@@ -103,21 +105,21 @@ def _bool(value: bool) -> str:
 
 def _screen(number: int, screen: Screen) -> str:
     if screen.again is not None:
-        return f"Tile0 {_number(screen.again)} Again"
+        return f"Tile0 {plain(screen.again, 4)} Again"
     if screen.layer is None:
         return f"Tile{number}"
     layer = screen.layer
     numbers = (layer.angle, layer.low, layer.high, screen.wave, math.degrees(screen.turn))
-    return f"{number} {' '.join(map(_number, numbers))} Lines"
+    return f"{number} {_row(numbers)} Lines"
 
 
 def _tile(number: int, screen: Screen, whole: bool) -> str:
-    fresh, covers = (" ".join(map(_number, v.tolist())) for v in (screen.fresh, screen.covers))
+    fresh, covers = (_row(v.tolist()) for v in (screen.fresh, screen.covers))
     return (
-        f"/Tile{number} {_number(screen.width)} {_number(screen.height)} [ {fresh} ] [ {covers} ] "
-        f"{'true' if whole else 'false'} {_number(screen.widens)} {len(screen.enters)} GetTile def"
+        f"/Tile{number} {plain(screen.width, 4)} {plain(screen.height, 4)} [ {fresh} ] [ {covers} ] "
+        f"{'true' if whole else 'false'} {plain(screen.widens, 4)} {len(screen.enters)} GetTile def"
     )
 
 
-def _number(value: float) -> str:
-    return f"{value:.4f}".rstrip("0").rstrip(".")
+def _row(values: Iterable[float]) -> str:
+    return " ".join(plain(value, 4) for value in values)
