@@ -17,7 +17,7 @@ from pathlib import Path
 
 PENINK = shlex.split(os.environ.get("PENINK", "penink"))
 GS = os.environ.get("GS", "gs")
-PAGE = (18.6 * 72, 18.7 * 72)
+PAGE = (18.6 * 72, 26.0 * 72)
 MARGIN = 0.7 * 72
 
 
@@ -193,6 +193,46 @@ def every_size(s: Studio) -> None:
         s.print("face", f"face-{inches}", inches)
 
 
+#: Nine strokes on the camera picture, in its 512 pixels: the grass level, the coat falling.
+STROKES = (
+    "M20 470H150", "M270 470C350 462 430 466 500 460", "M260 400C340 394 420 398 500 390",
+    "M300 330C370 324 440 326 500 320", "M150 110C140 200 120 300 110 420", "M190 110C190 200 180 290 165 400",
+    "M100 190C80 260 65 330 60 430", "M225 150C230 210 235 250 215 300", "M130 100C110 130 85 170 70 220",
+)  # fmt: skip
+
+
+def along(s: Studio) -> None:
+    """Hatching straight, along the form and in fur; along the form at three sizes; with a user's strokes; engraved."""
+    for name in ("chelsea", "camera", "astronaut"):
+        s.penink("detect-edges", f"{name}.png", "-o", f"{name}.form.edges.json")
+        s.penink("extract-samples", "-e", f"{name}.form.edges.json", f"{name}.png", "-o", f"{name}.form.pgm")
+        s.penink("detect-directions", "-e", f"{name}.form.edges.json", f"{name}.png", "-o", f"{name}.directions.pgm")
+    edges = ("-e", "chelsea.form.edges.json")
+    follow = (*edges, "--directions", "chelsea.directions.pgm")
+    s.blast("chelsea.form.pgm", "cat-straight", 3.75, *edges, "--texture", "crosshatch")
+    s.blast("chelsea.form.pgm", "cat-form", 3.75, *follow, "--texture", "form")
+    s.blast("chelsea.form.pgm", "cat-fur", 3.75, *follow, "--texture", "fur")
+    for width in (1.1, 2.2, 4.4):
+        s.blast("chelsea.form.pgm", f"cat-form-{width}", width, *follow, "--texture", "form")
+    for width in (0.9, 1.8, 3.6):
+        s.blast(
+            "astronaut.form.pgm", f"engraved-{width}", width, "-e", "astronaut.form.edges.json", "--directions",
+            "astronaut.directions.pgm", "--texture", "engraving",
+        )  # fmt: skip
+    paths = "".join(f'<path d="{d}" fill="none" stroke="black"/>' for d in STROKES)
+    svg = f'<svg xmlns="http://www.w3.org/2000/svg" width="512" height="512" viewBox="0 0 512 512">{paths}</svg>\n'
+    (s.folder / "nine.svg").write_text(svg)
+    s.penink(
+        "detect-directions", "-e", "camera.form.edges.json", "--strokes", "nine.svg", "camera.png", "-o",
+        "camera.nine.directions.pgm",
+    )  # fmt: skip
+    for name, field in (("own", "camera.directions.pgm"), ("nine", "camera.nine.directions.pgm")):
+        s.blast(
+            "camera.form.pgm", f"man-{name}", 2.5, "-e", "camera.form.edges.json", "--directions", field, "--texture",
+            "form",
+        )  # fmt: skip
+
+
 # ------------------------------------------------------------------- the page
 
 
@@ -322,6 +362,27 @@ def compose(folder: Path) -> None:
         else:
             sheet.picture(x, y, folder / f"close-{panel}.pgm", side)
         sheet.text(x, y + side + 18, caption)
+    y += side + 40
+    x = left
+    for name, caption in (
+        ("cat-straight", "9  Hatched straight;"), ("cat-form", "along the form;"), ("cat-fur", "in fur."),
+        ("man-own", "10  Along a field that was found;"), ("man-nine", "helped by nine strokes."),
+    ):  # fmt: skip
+        w, h = sheet.drawing(x, y, folder / f"{name}.eps")
+        sheet.text(x, y + 2.5 * inch + 18, caption)
+        x += w + 12
+    y += 2.5 * inch + 40
+    x = left
+    for name, sizes, words in (
+        ("cat-form", (1.1, 2.2, 4.4), "11  Along the form at three sizes: as many strokes to the inch."),
+        ("engraved", (0.9, 1.8, 3.6), "12  Engraved: lines that swell."),
+    ):
+        sheet.text(x, y + 3.6 * inch + 18, words)
+        for width in sizes:
+            deep = width * inch * (1 if name == "engraved" else 2 / 3)
+            w, _ = sheet.drawing(x, y + 3.6 * inch - deep, folder / f"{name}-{width}.eps")
+            x += w + 12
+        x += 12
     sheet.write(folder, "figures")
 
 
@@ -353,7 +414,7 @@ def main() -> None:
     folder = Path(sys.argv[1])
     studio = Studio(folder)
     with ThreadPoolExecutor(2) as pool:
-        figures = (scales, billiard, portrait, with_and_without, textures, every_size)
+        figures = (scales, billiard, portrait, with_and_without, textures, every_size, along)
         made = [pool.submit(figure, studio) for figure in figures]
         keys(studio)
         close_up(studio)
