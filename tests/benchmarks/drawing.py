@@ -1,6 +1,6 @@
-"""What drawings show of the sample photographs, style by style, and what `draw` costs.
+"""What drawings show of the sample photographs, style by style, how true their tone is, and one at many sizes.
 
-Run as ``python -m tests.benchmarks.drawing [detail] [cost] [STYLE …]``: all parts and all styles, or those named.
+Run as ``python -m tests.benchmarks.drawing [detail] [tone] [sizes] [STYLE …]``: all parts and styles, or those named.
 `detail`: a row a style, means and each picture. Drawing and photograph are both seen in a band between 0.96 and
 3.84 points (differences of Gaussians) and correlated, so that a drawing may be lighter, darker or of more contrast:
 
@@ -10,25 +10,26 @@ Run as ``python -m tests.benchmarks.drawing [detail] [cost] [STYLE …]``: all p
     black    and darker than 0.05
 """
 
-import resource
 import subprocess
 import sys
 import tempfile
-import time
 from pathlib import Path
 
 import numpy as np
-import skimage.data
 from PIL import Image
 from scipy.ndimage import gaussian_filter
-from skimage.feature import canny
 
+from penink_cli.blasting.blast import left_over
+from penink_cli.blasting.sheet import coverage
+from penink_cli.blasting.telling import told
+from penink_cli.formats import lines, strokes
 from penink_cli.options.styles import shipped
 from samples.photographs import NAMES
 
 INCHES, DPI = 6, 150
 FINE, COARSE, AROUND, EYE = 2.0, 8.0, 16.0, DPI / 32  # pixels
 MARGIN, FLOOR = 12, 0.004
+TONE_OF = ("astronaut", "chelsea", "coins")
 WANTED = {"detail": 0.72, "telling": 0.52, "paper": 0.10, "black": 0.03}
 
 
@@ -55,13 +56,9 @@ def seen(drawing, photo):
     }
 
 
-def draw(photo, output, *options):
-    """Draw, by the command itself; seconds of processor."""
-    before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    subprocess.run([sys.executable, "-m", "penink_cli", "draw", photo, *options, "-o", output], check=True,
-                   stderr=subprocess.DEVNULL)  # fmt: skip
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+def penink(*words):
+    """Run a filter."""
+    subprocess.run([sys.executable, "-m", "penink_cli", *map(str, words)], check=True, stderr=subprocess.DEVNULL)
 
 
 def table(folder, styles):
@@ -70,41 +67,68 @@ def table(folder, styles):
     for style in styles:
         rows = []
         for name in NAMES:
-            draw(folder / f"{name}.png", folder / "d.png", "--style", style, "--width", f"{INCHES}in")
-            rows.append(seen(folder / "d.png", folder / f"{name}.png"))
+            photo = folder / f"{name}.png"
+            penink("draw", photo, "--style", style, "--width", f"{INCHES}in", "-o", folder / "d.png")
+            rows.append(seen(folder / "d.png", photo))
         means = [f"{np.mean([row[k] for row in rows]):.3f}" for k in WANTED]
         each = [f"{row['detail']:.2f} / {row['telling']:.2f}" for row in rows]
         print(f"| {style} | " + " | ".join([*means, *each]) + " |", flush=True)
     print("wanted of house: " + ", ".join(f"{k} >= {v}" for k, v in WANTED.items()))
 
 
-def cost(folder):
-    """12 and half a megapixel of a portrait, with a camera's grain, beside Canny's detector on the former."""
-    face = Image.fromarray(skimage.data.astronaut()[64:448])
-    for width, height in ((4000, 3000), (816, 612)):
-        values = np.asarray(face.resize((width, height), Image.Resampling.BICUBIC), float)
-        values = np.clip(values + np.random.default_rng(0).normal(0, 3, values.shape), 0, 255).astype(np.uint8)
-        Image.fromarray(values).save(folder / "p.jpg", quality=92)
-        grey = np.asarray(Image.open(folder / "p.jpg").convert("L")) / 255
-        start = time.process_time()
-        canny(grey, 2)
-        once = time.process_time() - start
-        spent = draw(folder / "p.jpg", folder / "d.svg")
-        peak = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss // 1024
-        print(f"draw of {width * height / 1e6:.1f} megapixels: {spent:.1f} s of processor, {spent / once:.1f} x canny"
-              f" on the same ({once:.2f} s); {peak} MB at the most")  # fmt: skip
+def tone(folder):
+    """RMS and bias of tone against the composed grey, as the eye sees both: the hatching alone, and all there is."""
+    print("\n| picture | house, hatching alone: RMS, bias % | house, all of it | true, all of it |")
+    print("| --- | --- | --- | --- |")
+    for name in TONE_OF:
+        photo, found, row = folder / f"{name}.png", folder / "l.json", []
+        penink("detect-lines", photo, "-o", found)
+        for style, options, strength in (
+            ("house", ("--no-lines",), ()), ("house", (), ()), ("true", ("--no-outlines",), ("--strength", "0"))
+        ):  # fmt: skip
+            penink("compose", "--width", f"{INCHES}in", *strength, photo, "-o", folder / "g.pgm")
+            penink("draw", photo, "--style", style, "--width", f"{INCHES}in", *options, "-o", folder / "d.jsonl")
+            with open(folder / "d.jsonl", "rb") as stream:
+                drawn = strokes.read(stream, "d.jsonl")
+            wanted = 1 - np.asarray(Image.open(folder / "g.pgm"), float) / 255
+            if style == "house" and not options:
+                with open(found, "rb") as stream:
+                    wanted, _ = told(wanted, drawn.width, drawn.height, lines.read(stream, "l.json"), None, 1)
+            error = left_over(wanted, drawn.width, drawn.height, drawn, 600.0, 1)
+            row.append(f"{100 * np.sqrt((error**2).mean()):.2f}, {-100 * error.mean():+.2f}")
+        print(f"| {name} | " + " | ".join(row) + " |", flush=True)
+    print("wanted: <= 0.9, 0.2; <= 2.0, 0.6; <= 0.75, 0.2")
+
+
+def sizes(folder):
+    """One illustration from a stamp to a poster: bytes, strokes, and the share of the sheet that is inked."""
+    photo, kept = folder / f"{NAMES[0]}.png", folder / "d.penink"
+    penink("draw", photo, "-o", kept)
+    row = [f"{kept.stat().st_size} bytes"]
+    for inches in (1, 4, 24):
+        penink("render", "--width", f"{inches}in", "--device-dpi", "none", kept, "-o", folder / "d.jsonl")
+        with open(folder / "d.jsonl", "rb") as stream:
+            drawn = strokes.read(stream, "d.jsonl")
+        ink = coverage(drawn, round(drawn.height), round(drawn.width))
+        count = f"{len(drawn)} strokes, {len(drawn) / inches**2:.0f} a square inch"
+        row.append(f"{inches} in: {count}, ink {ink.mean():.3f}")
+    print("\n" + "; ".join(row) + " (wanted: <= 14 KB, as much ink at each size)", flush=True)
+
+
+PARTS = {"detail": None, "tone": tone, "sizes": sizes}
 
 
 def main():
-    parts = [word for word in sys.argv[1:] if word in ("detail", "cost")] or ["detail", "cost"]
-    styles = [word for word in sys.argv[1:] if word not in parts] or shipped()
+    parts = [word for word in sys.argv[1:] if word in PARTS] or list(PARTS)
+    styles = [word for word in sys.argv[1:] if word not in PARTS] or shipped()
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         subprocess.run([sys.executable, "-m", "samples.photographs", folder, *NAMES], check=True)
-        if "detail" in parts:
-            table(folder, styles)
-        if "cost" in parts:
-            cost(folder)
+        for part in parts:
+            if part == "detail":
+                table(folder, styles)
+            else:
+                PARTS[part](folder)
 
 
 if __name__ == "__main__":
