@@ -4,7 +4,7 @@
 #   make test       the tests            make lint    ruff, mypy, cython-lint
 #   make quick      the tests that neither draw with Ghostscript or Chromium nor take long
 #   make figures    the paper's figures with our own pictures: samples/out/figures.pdf, .png and table1.md
-#   make gallery    the README's pictures: samples/gallery/*.png
+#   make gallery    the README's pictures: samples/gallery/*.png; samples/out/gallery.html and .pdf
 #   make bench      the measurements     make dist    wheel and source distribution
 #   make check-dist both, installed in an empty environment
 #   make check-pythons  the same bytes under every CPython that this machine has (PYTHONS=…)
@@ -49,7 +49,7 @@ samples: $(INSTALLED)
 
 gallery: $(INSTALLED)
 	PATH="$(BIN):$$PATH" $(BIN)/python samples/photographs.py samples/out
-	PATH="$(BIN):$$PATH" $(BIN)/python samples/gallery.py samples/out samples/gallery
+	PATH="$(BIN):$$PATH" $(BIN)/python samples/gallery.py samples/out samples/gallery samples/out
 
 figures: $(INSTALLED)
 	$(MAKE) -C samples figures PATH="$(BIN):$$PATH"

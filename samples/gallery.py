@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
-"""The README's pictures: ``gallery.py PHOTOS FOLDER``, from the sample photographs to small PNG files.
+"""The README's pictures: ``gallery.py PHOTOS FOLDER [PAGES]``, from the sample photographs to small PNG files.
 
-One photograph and its drawing at three sizes on paper, side by side, and a strip of all styles. `penink` is the one on
-the PATH; equal photographs give equal bytes.
+One photograph and its drawing at three sizes on paper, side by side, and a strip of all styles; in PAGES, gallery.html
+and gallery.pdf, all photographs in all styles. `penink` is the one on the PATH; equal photographs give equal bytes.
 """
 
+import base64
+import io
 import subprocess
 import sys
 import tempfile
@@ -16,6 +18,8 @@ from PIL import Image
 PORTRAIT = "astronaut"
 SIZES = (1.0, 1.8, 3.2)  # inches
 ANIMAL, STRIP, ROW = "chelsea", 2.2, 3  # the strip's photograph, inches of a drawing, drawings a row
+PAGE = 3.0  # inches of a drawing on the gallery's pages
+NAMES = ("astronaut", "camera", "chelsea", "coffee", "coins", "moon", "rocket")
 DPI, GAP = 120, 12
 STYLES = ("house", "engraving", "sketch", "comic", "stipple", "architect", "fur", "true")
 
@@ -52,6 +56,33 @@ def write(sheet, path):
     image.save(path, optimize=True)
 
 
+def pages(photos, folder, out):
+    """A page for each photograph, with its drawings in all styles: one HTML file and one PDF."""
+    out.mkdir(parents=True, exist_ok=True)
+    sheets, parts = [], []
+    for photo in sorted(photos.glob("*.png")):
+        if photo.stem not in NAMES:
+            continue
+        with Image.open(photo) as image:
+            side = round(PAGE * DPI)
+            grey = np.asarray(image.convert("L").resize((side, side * image.height // image.width)))
+        drawings = [grey, *(drawn(photo, style, PAGE, folder) for style in STYLES)]
+        sheets.append(Image.fromarray(side_by_side(drawings, ROW)))
+        figures = []
+        for name, picture in zip(("photograph", *STYLES), drawings, strict=True):
+            data = io.BytesIO()
+            Image.fromarray(picture).save(data, "png", optimize=True)
+            code = base64.b64encode(data.getvalue()).decode()
+            figures.append(
+                f'<figure><img src="data:image/png;base64,{code}" alt=""><figcaption>{name}</figcaption></figure>'
+            )
+        parts.append(f"<h2>{photo.stem}</h2>\n<div>" + "\n".join(figures) + "</div>")
+    head = '<!DOCTYPE html>\n<html lang="en"><meta charset="utf-8"><title>penink: photographs and styles</title>\n'
+    look = "<style>body{font-family:sans-serif}div{display:flex;flex-wrap:wrap;gap:1em}figure{margin:0}</style>\n"
+    (out / "gallery.html").write_text(head + look + "\n".join(parts) + "\n</html>\n", encoding="utf-8")
+    sheets[0].save(out / "gallery.pdf", save_all=True, append_images=sheets[1:], resolution=DPI)
+
+
 def main():
     photos, out = Path(sys.argv[1]), Path(sys.argv[2])
     out.mkdir(parents=True, exist_ok=True)
@@ -66,6 +97,8 @@ def main():
         write(side_by_side([grey, *reversed(sizes)], 4), out / "sizes.png")
         styles = [drawn(photos / f"{ANIMAL}.png", style, STRIP, folder) for style in STYLES]
         write(side_by_side(styles, ROW), out / "styles.png")
+        if len(sys.argv) > 3:
+            pages(photos, folder, Path(sys.argv[3]))
 
 
 if __name__ == "__main__":

@@ -26,7 +26,7 @@ KNOT_PT, KNOTS = 2.0, (1, 2, 3, 4, 6, 8, 12, 16, 24, 32)
 #: Widths may be off by this much (points), for the sake of fewer knots.
 TOLERANCE_PT = 0.06
 #: Rounds in which the tone is set right, by no more than this part of the widths in each.
-ROUNDS, CORRECTION = 2, 0.3
+ROUNDS, CORRECTION = 4, 0.3
 #: Where the tone is less, an error counts as little as there.
 SINGLE = 0.1
 
