@@ -40,6 +40,7 @@ SEEN_PT = 1.0  # σ of the blur: hatching shows nothing finer
 # Smaller regions are specks that no stroke can show: 4 x 4 pixels of 512 x 512, however finely the photo is resolved.
 LEAST_REGION, LEAST_REGION_PX = 1 / 16384, 16  # of the picture, and at least so many pixels
 VIEW_PX = 1_000_000
+SEEN_PX = 1.0  # of the view: σ by which what is seen at a size is blurred; a finer view tells no more of it
 _LEAST_SIDE = 32  # samples; below that a cell holds too much of the picture
 _RUNG = 50  # the error is tried of grids that differ by a sample a side, or by 1/50 where that is more
 _POWER = 0.6  # of the side by which the error falls, where only one is known
@@ -111,7 +112,8 @@ def choose_grid(
     exact = _View(seen, 0.0, POINT, shown)
     if photo is not None:
         exact = _View(seen, camera_blur(seen, edges), AREA, shown)
-    quick = exact.smaller(VIEW_PX)
+    enough = math.ceil(seen.size / max(1.0, shown / SEEN_PX) ** 2)
+    quick = exact.smaller(min(VIEW_PX, enough if 3 * enough < seen.size else seen.size))  # else it does not pay
     regions = _Regions(edges, *seen.shape)
     long = max(width, height)
     ladder = _ladder(-(-_LEAST_SIDE * long // min(width, height)), long)

@@ -21,7 +21,7 @@ import skimage.data
 from PIL import Image
 
 SIZES = {"half": (900, 600), "two": (1732, 1155), "twelve": (4242, 2828)}
-STYLES = ("true", "house")
+DRAWINGS = (("true", ".ps"), ("house", ".ps"), ("house", ".penink"))
 
 
 def portrait(path, size):
@@ -89,13 +89,14 @@ def stages(folder, sizes):
         portrait(photo, SIZES[size])
         unit = canny(photo)
         print(f"{SIZES[size][0]} x {SIZES[size][1]} pixels; canny {unit:.2f} s")
-        for style in STYLES:
+        for style, ending in DRAWINGS:
             results = []
             for threads in (1, 2):
-                took, result = drawn(photo, folder / "d.ps", "--style", style, "--width", "6in", f"--threads={threads}")
+                options = ["--style", style, "--width", "6in", f"--threads={threads}"]
+                took, result = drawn(photo, folder / f"d{ending}", *options)
                 results.append(result)
                 each = ", ".join(f"{name} {seconds:.2f}" for name, seconds in took["spent"].items())
-                print(f"  {style}, {threads} thread{'s' * (threads > 1)}: {took['total']:.2f} s of processor"
+                print(f"  {style} {ending}, {threads} thread{'s' * (threads > 1)}: {took['total']:.2f} s of processor"
                       f" ({took['total'] / unit:.1f} x canny), {took['wall']:.2f} s on the wall, {took['MB']:.0f} MB\n"
                       f"    {each}", flush=True)  # fmt: skip
             if results[0] != results[1]:
