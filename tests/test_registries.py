@@ -88,7 +88,7 @@ def write(out: Any, layers: Any, page: Any, colours: Any, decimals: float, numbe
 ''',
     "penink_cli/outputs/registry.py",
     '    "to-pdf": ',
-    '    "to-ends": Output(".ends", "Write where strokes begin and end."),\n',
+    '    "to-ends": Medium(".ends", "Write where strokes begin and end."),\n',
     "test_main.py outputs/test_manual.py faults/test_outputs.py faults/test_overwriting.py",
 )
 TEXTURE = Addition(

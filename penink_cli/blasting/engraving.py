@@ -20,7 +20,7 @@ import numpy.typing as npt
 
 from penink_cli.blasting import curves, pen_lines, walls
 from penink_cli.blasting.form import PAD, _blurred, _normal
-from penink_cli.blasting.level_lines import Lines, level_lines
+from penink_cli.blasting.level_lines import LevelLines, level_lines
 from penink_cli.blasting.low_pass import LowPass
 from penink_cli.blasting.phase import Field, Nodes, Plane, solve
 from penink_cli.blasting.sheet import CELL_PT, EYE_PT, Cells, Sheet, halve
@@ -49,12 +49,12 @@ KNOT_PT = 2.0
 TIP_PT, TAPER_PT, TAPER_SHARE, BLUNT = 0.05, 6.0, 0.4, 0.6
 #: Where a line goes on after a gap, points are no longer than so many times the gap.
 TAPER_GAP = 1.2
-#: Lines shorter than this are left out.
+#: LevelLines shorter than this are left out.
 SHORTEST_PT = 2.0
-#: Lines come as near to the frame as those of such a pen do. Along it, so far within, runs one that fills what their
+#: LevelLines come as near to the frame as those of such a pen do. Along it, so far within, runs one that fills what their
 #: round ends leave, where it is darker than this.
 FRAME_PEN_PT, RIM_PT, RIM_TONE = 1.15, 0.4, 0.6
-#: Lines along a field are moved so many times by such a part of how much further they are from one neighbour.
+#: LevelLines along a field are moved so many times by such a part of how much further they are from one neighbour.
 EVENINGS, EVENED = 5, 0.18
 #: Their ends are prolonged by so many samples at the most, while lines there are as far apart as this part of their
 #: distance.
@@ -148,7 +148,7 @@ def _tracks(
     return _cut(sheet, lines, borders, spacing, engraving.finest_pt)
 
 
-def _evened_out(lines: Lines, spacing: float) -> Lines:
+def _evened_out(lines: LevelLines, spacing: float) -> LevelLines:
     """Lines moved to about the middle between their neighbours, ends prolonged between two that close up.
 
     So where a line ends, what is white beside it is a point and no gap.
@@ -172,7 +172,7 @@ def _evened_out(lines: Lines, spacing: float) -> Lines:
     points, first = points[kept], curves.starts(sizes)
     for _ in range(EVENINGS):
         points, _, _ = _moved(points, first, spacing)
-    return Lines(points, first, lines.ring)
+    return LevelLines(points, first, lines.ring)
 
 
 def _moved(points: Floats, first: Ints, spacing: float) -> tuple[Floats, Floats, Mask]:
@@ -183,7 +183,7 @@ def _moved(points: Floats, first: Ints, spacing: float) -> tuple[Floats, Floats,
     return points + normals * (EVENED * _mean_along(more, first, 4))[:, None], apart, both
 
 
-def _prolonged(lines: Lines) -> Lines:
+def _prolonged(lines: LevelLines) -> LevelLines:
     """Lines with so many more samples straight on at the ends of those that are no rings."""
     sizes = np.diff(lines.first)
     more = np.where(lines.ring, 0, PROLONGED)
@@ -196,7 +196,7 @@ def _prolonged(lines: Lines) -> Lines:
     points = np.asarray(lines.points, np.float64)
     ahead = _ahead(points, lines.first)[lines.first[which] + inside]
     step = pen_lines.STEP_PT
-    return Lines(points[lines.first[which] + inside] + ahead * (beyond * step), first, lines.ring)
+    return LevelLines(points[lines.first[which] + inside] + ahead * (beyond * step), first, lines.ring)
 
 
 def _known(nodes: Nodes, engraving: Engraving, spacing: float, sheet: Sheet, seed: int) -> tuple[Field, Plane]:
@@ -241,7 +241,7 @@ def _slope(values: Plane, axis: int) -> Floats:
     return np.asarray((high - low) / 2, np.float64)
 
 
-def _cut(sheet: Sheet, lines: Lines, borders: walls.Walls, spacing: float, finest_pt: float) -> Tracks:
+def _cut(sheet: Sheet, lines: LevelLines, borders: walls.Walls, spacing: float, finest_pt: float) -> Tracks:
     """Lines cut at walls, sampled anew."""
     lines, inner = _with_rim(sheet, lines)
     n = len(lines.ring)
@@ -279,7 +279,7 @@ def _cut(sheet: Sheet, lines: Lines, borders: walls.Walls, spacing: float, fines
     )
 
 
-def _with_rim(sheet: Sheet, lines: Lines) -> tuple[Lines, int]:
+def _with_rim(sheet: Sheet, lines: LevelLines) -> tuple[Lines, int]:
     """The lines and four more along the frame; and how many there were."""
     w, h, d = sheet.width, sheet.height, RIM_PT
     corners = np.array([[d, d], [w - d, d], [w - d, h - d], [d, h - d], [d, d]])
@@ -289,7 +289,7 @@ def _with_rim(sheet: Sheet, lines: Lines) -> tuple[Lines, int]:
         sides.append(a + (b - a) * (np.arange(steps + 1) / steps)[:, None])
     sizes = np.concatenate([np.diff(lines.first), [len(side) for side in sides]])
     ring = np.concatenate([lines.ring, np.zeros(4, bool)])
-    return Lines(np.concatenate([lines.points, *sides]), curves.starts(sizes), ring), len(lines.ring)
+    return LevelLines(np.concatenate([lines.points, *sides]), curves.starts(sizes), ring), len(lines.ring)
 
 
 def _along(points: Floats, origin: Ints, at: Floats, last: Ints) -> Floats:

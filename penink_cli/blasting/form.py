@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from penink_cli.blasting import candidates, pen_lines, sweep, walls
-from penink_cli.blasting.level_lines import Lines, level_lines
+from penink_cli.blasting.level_lines import LevelLines, level_lines
 from penink_cli.blasting.phase import Field, Nodes, Plane, solve
 from penink_cli.blasting.shares import box_mean
 from penink_cli.blasting.sheet import SIGMA_PT, Cells, Sheet, resample
@@ -30,7 +30,7 @@ FAINT, SPARSEST = 0.08, 0.05
 AROUND_PT = 9.0
 #: A layer is active where it covers more than this: only there does it fill gaps.
 ACTIVE = 0.04
-#: Lines begin and end where the layer covers so much, a different tone for each: else their ends draw a contour.
+#: LevelLines begin and end where the layer covers so much, a different tone for each: else their ends draw a contour.
 RAGGED = (0.004, 0.03)
 #: Short strokes: how long they are, how far apart the places tried, and the cosine of the most that they turn in a
 #: quarter of their length.
@@ -184,7 +184,7 @@ class Form:
         active = inside & laid.active[y, x] & (error[y, x] > 0)
         return np.where(active, sheet.residual[y, x], 0.0)
 
-    def _near(self, lines: Lines, wanted: npt.NDArray[np.bool_], length: float) -> npt.NDArray[np.bool_]:
+    def _near(self, lines: LevelLines, wanted: npt.NDArray[np.bool_], length: float) -> npt.NDArray[np.bool_]:
         """Whether one of the points on the same line within half such a length is wanted."""
         reach = max(1, round(length / 2 / pen_lines.STEP_PT))
         total = np.concatenate([[0], np.cumsum(wanted)])
@@ -236,7 +236,7 @@ class Form:
         nx, ny = _normal(planes[0][y, x], planes[1][y, x])
         return np.column_stack([ny, -nx]).astype(np.float64)
 
-    def _lines(self, field: Field, phase: Plane, level: float, wanted: npt.NDArray[np.bool_], seed: int) -> Lines:
+    def _lines(self, field: Field, phase: Plane, level: float, wanted: npt.NDArray[np.bool_], seed: int) -> LevelLines:
         """Level lines where they are wanted (rows, columns of the nodes), smooth and in equal steps."""
         found = level_lines(field, phase, level, self.sheet.each, wanted)
         lines = pen_lines.evened(found, sweep.SHORTEST_PT)
@@ -246,7 +246,7 @@ class Form:
         return lines
 
     def _strokes(
-        self, lines: Lines, density: Plane, stroke_pt: tuple[float, float], pen: float, seed: int
+        self, lines: LevelLines, density: Plane, stroke_pt: tuple[float, float], pen: float, seed: int
     ) -> DrawnStrokes:
         """Lines cut into strokes as a hand draws them."""
         middle = lines.points[(lines.first[:-1] + lines.first[1:]) // 2]

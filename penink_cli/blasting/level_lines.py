@@ -24,7 +24,7 @@ PER_LINK = 16
 
 
 @dataclass(frozen=True, eq=False)
-class Lines:
+class LevelLines:
     """Polylines, as in `curves.Polylines`; those that end where they began are rings (n,).
 
     points: (p, 2), in single precision as they are found.
@@ -41,7 +41,7 @@ def level_lines(
     level: float = 0.0,
     each: Each = one_by_one,
     wanted: npt.NDArray[np.bool_] | None = None,
-) -> Lines:
+) -> LevelLines:
     """Where the phase (rows, columns; see `phase.solve`) is `level` but for whole turns: 0, or 1/2 for lines between.
 
     Lines end at singularities, at the border of the grid, and beyond nodes where they are wanted (rows, columns).
@@ -81,7 +81,7 @@ def _band_lines(
     return points[: first[n]].copy(), first[: n + 1].astype(np.int64), ends[:n].astype(np.int64)
 
 
-def _joined(parts: list[tuple[Plane, Ints, Ints]], columns: int) -> Lines:
+def _joined(parts: list[tuple[Plane, Ints, Ints]], columns: int) -> LevelLines:
     """The lines of all bands, those that end on the row between two bands made one."""
     counts = np.array([len(first) - 1 for _, first, _ in parts])
     size = np.concatenate([np.diff(first) for _, first, _ in parts])
@@ -97,7 +97,7 @@ def _joined(parts: list[tuple[Plane, Ints, Ints]], columns: int) -> Lines:
     order = order[key[order] >= 0]
     same = np.flatnonzero(key[order][1:] == key[order][:-1])
     if not len(same):
-        return Lines(points, first, ring)
+        return LevelLines(points, first, ring)
     partner = np.full(len(key), -1)
     partner[order[same]], partner[order[same + 1]] = order[same + 1], order[same]
     chains = _chains(partner.tolist())
@@ -114,7 +114,7 @@ def _joined(parts: list[tuple[Plane, Ints, Ints]], columns: int) -> Lines:
     chain_first = curves.starts(np.array([len(chain) for chain, _ in chains]))[:-1]
     sizes = np.concatenate([size[whole], np.add.reduceat(size[line] - later, chain_first)])
     closed = np.array([is_ring for _, is_ring in chains], bool)
-    return Lines(out, curves.starts(sizes), np.concatenate([ring[whole], closed]))
+    return LevelLines(out, curves.starts(sizes), np.concatenate([ring[whole], closed]))
 
 
 def _chains(partner: list[int]) -> list[tuple[list[int], bool]]:

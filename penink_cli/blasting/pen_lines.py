@@ -12,13 +12,13 @@ import numpy.typing as npt
 
 from penink_cli.blasting import curves
 from penink_cli.blasting._compiled import lines as _lines
-from penink_cli.blasting.level_lines import Lines
+from penink_cli.blasting.level_lines import LevelLines
 from penink_cli.blasting.phase import Nodes, Plane
 from penink_cli.ground.model import Floats, Ints
 
 #: Distance of a line's points, points on paper.
 STEP_PT = 1.0
-#: Lines are smoothed over so much of their distance: rounds of a binomial mean of σ² ½ each, two at the least.
+#: LevelLines are smoothed over so much of their distance: rounds of a binomial mean of σ² ½ each, two at the least.
 SMOOTHING, FEWEST_ROUNDS, MOST_ROUNDS = 0.5, 2, 40
 #: A stroke follows its line within this.
 TOLERANCE_PT = 0.2
@@ -39,14 +39,14 @@ class Parts:
     joined: npt.NDArray[np.bool_]
 
 
-def lengths(lines: Lines) -> Floats:
+def lengths(lines: LevelLines) -> Floats:
     """(n,) length of each line, points."""
     out = np.empty(len(lines.ring))
     _lines.lengths(lines.points, lines.first, out)
     return out
 
 
-def evened(lines: Lines, shortest_pt: float) -> Lines:
+def evened(lines: LevelLines, shortest_pt: float) -> LevelLines:
     """The lines that are not shorter than that, in equal steps of about `STEP_PT`."""
     length = lengths(lines)
     keep = np.flatnonzero(length >= max(shortest_pt, 1e-6))
@@ -54,7 +54,7 @@ def evened(lines: Lines, shortest_pt: float) -> Lines:
     begin = curves.starts(steps + 1)
     out = np.empty((begin[-1], 2))
     _lines.even(lines.points, lines.first, length, keep, begin, out)
-    return Lines(out, begin, lines.ring[keep])
+    return LevelLines(out, begin, lines.ring[keep])
 
 
 def look_up(values: Plane, nodes: Nodes, points: npt.NDArray[np.floating]) -> Plane:
@@ -64,13 +64,13 @@ def look_up(values: Plane, nodes: Nodes, points: npt.NDArray[np.floating]) -> Pl
     return out
 
 
-def smooth(lines: Lines, spacing: npt.NDArray[np.floating]) -> None:
+def smooth(lines: LevelLines, spacing: npt.NDArray[np.floating]) -> None:
     """Take from lines, in place, the corners that the grid gave them, the more the further (p,) they are apart."""
     rounds = np.clip(SMOOTHING * spacing * spacing, FEWEST_ROUNDS, MOST_ROUNDS).astype(np.uint8)
     _lines.smooth(lines.points, lines.first, rounds, lines.ring.astype(np.uint8))
 
 
-def live(lines: Lines, wanted: npt.NDArray[np.bool_], fewest: int = 3) -> tuple[Lines, npt.NDArray[np.bool_]]:
+def live(lines: LevelLines, wanted: npt.NDArray[np.bool_], fewest: int = 3) -> tuple[LevelLines, npt.NDArray[np.bool_]]:
     """The runs of points that are wanted (p,), at least so many in a row, and whether (n, 2) they are cut there.
 
     A ring of which some is not wanted falls into runs that begin and end where it did.
@@ -88,10 +88,10 @@ def live(lines: Lines, wanted: npt.NDArray[np.bool_], fewest: int = 3) -> tuple[
     first = curves.starts(size)
     points = lines.points[np.repeat(start, size) + curves.ramp(size)]
     cut = np.column_stack([start > lines.first[line], end < lines.first[line + 1]])
-    return Lines(points, first, lines.ring[line] & ~cut.any(axis=1)), cut
+    return LevelLines(points, first, lines.ring[line] & ~cut.any(axis=1)), cut
 
 
-def turn_rings(lines: Lines, seed: int) -> None:
+def turn_rings(lines: LevelLines, seed: int) -> None:
     """Let rings, in place, begin anywhere: where they were found first they would all begin along one line."""
     rng = np.random.default_rng([seed & 0xFFFFFFFF, 9])
     for i, at in zip(np.flatnonzero(lines.ring).tolist(), rng.random(int(lines.ring.sum())).tolist()):
@@ -100,7 +100,7 @@ def turn_rings(lines: Lines, seed: int) -> None:
         ring[-1] = ring[0]
 
 
-def cut(lines: Lines, spacing: Floats, stroke_pt: tuple[float, float], shortest_pt: float, seed: int) -> Parts:
+def cut(lines: LevelLines, spacing: Floats, stroke_pt: tuple[float, float], shortest_pt: float, seed: int) -> Parts:
     """Strokes of a hand's length, whose ends keep clear of others' ends.
 
     lines: in equal steps. spacing: (n,) about how far from its neighbours each line is.
@@ -120,7 +120,7 @@ def cut(lines: Lines, spacing: Floats, stroke_pt: tuple[float, float], shortest_
     return Parts(line[:n], span[:n], joined[:n] > 0)
 
 
-def drawn(lines: Lines, parts: Parts, hand: Floats) -> tuple[Floats, Ints]:
+def drawn(lines: LevelLines, parts: Parts, hand: Floats) -> tuple[Floats, Ints]:
     """Control points and where each stroke's begin: the parts as chains of cubics, which may reach beyond their lines.
 
     hand: (n, 3) how far each stroke is off its line: all of it, the same more at its end and less at its start, and its

@@ -193,8 +193,8 @@ class Sheet:
         belongs = np.full(n, np.inf) if enters is None else np.ascontiguousarray(enters)
         runs = np.full((n, most, 2), -1, np.int64)
         moved = np.zeros((n, 2))
-        against = _placing.Sheet(self.bits, self.residual, self.tone, self.weight, self.low_pass, self.gain)
-        tried = _placing.Candidates(points, lines.first, widths * self.pitch, walls, spacing, belongs)
+        against = _placing.Target(self.bits, self.residual, self.tone, self.weight, self.low_pass, self.gain)
+        tried = _placing.Tried(points, lines.first, widths * self.pitch, walls, spacing, belongs)
         terms = _placing.Terms(
             whole, strict, cost, caution, lenience, shortest_pt * self.pitch, shortest_wall_pt * self.pitch,
             np.asarray(shifts, np.float64),

@@ -13,8 +13,8 @@ _PIECES = 8  # of a Bézier segment
 
 
 @dataclass(frozen=True, eq=False)
-class Polylines:
-    """Polylines in the photo's frame, and how much each of their points counts.
+class WeightedLines:
+    """WeightedLines in the photo's frame, and how much each of their points counts.
 
     points: (p, 2) x, y as parts of the frame's width and height. first: (n + 1,) where each line begins. weight: (p,).
     """
@@ -24,7 +24,7 @@ class Polylines:
     weight: Floats
 
 
-def crossed(lines: Polylines, rows: int, columns: int) -> tuple[Floats, Floats]:
+def crossed(lines: WeightedLines, rows: int, columns: int) -> tuple[Floats, Floats]:
     """Double-angle vectors (rows, columns, 2) along the lines, summed by cell, and the sum of their lengths (rows,
     columns).
 
@@ -53,7 +53,7 @@ def crossed(lines: Polylines, rows: int, columns: int) -> tuple[Floats, Floats]:
     return vectors.reshape(rows, columns, 2), sums.reshape(rows, columns)
 
 
-def of_strokes(strokes: Strokes) -> Polylines:
+def of_strokes(strokes: Strokes) -> WeightedLines:
     """Strokes on a sheet of any size that stands for the photo, each segment in _PIECES pieces. Dots say nothing."""
     begin = strokes.first[:-1]
     segments = (np.diff(strokes.first) - 1) // 3
@@ -67,9 +67,9 @@ def of_strokes(strokes: Strokes) -> Polylines:
     points = np.empty((first[-1], 2))
     points[first[:-1]] = strokes.points[begin]
     points[first[of, None] + 1 + _PIECES * number[:, None] + np.arange(_PIECES)] = curve
-    return Polylines(points / (strokes.width, strokes.height), first, np.ones(len(points)))
+    return WeightedLines(points / (strokes.width, strokes.height), first, np.ones(len(points)))
 
 
-def of_lines(lines: Lines) -> Polylines:
+def of_lines(lines: Lines) -> WeightedLines:
     """Telling lines: each counts by how much the pen is pressed."""
-    return Polylines(lines.points / (lines.width, lines.height), lines.first, lines.weight)
+    return WeightedLines(lines.points / (lines.width, lines.height), lines.first, lines.weight)

@@ -59,7 +59,7 @@ class Size(click.ParamType):
         return int(parts[0]), int(parts[1])
 
 
-class Window(click.ParamType):
+class PixelWindow(click.ParamType):
     """``X,Y,W,H`` in pixels, whole numbers."""
 
     name = "X,Y,W,H"
@@ -120,7 +120,7 @@ class DeviceDpi(click.ParamType):
 
 LENGTH = Length()
 SIZE = Size()
-WINDOW = Window()
+WINDOW = PixelWindow()
 POSITIVE = Finite(above=0)
 
 

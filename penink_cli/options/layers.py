@@ -45,7 +45,7 @@ class Colour(click.ParamType):
         return of_code(f"#{code}")
 
 
-class Paper(click.ParamType):
+class PaperName(click.ParamType):
     """The name of a paper, or its size."""
 
     name = "paper"
@@ -77,7 +77,7 @@ def page_options(function: F) -> F:
         ),
         click.option(
             "--paper",
-            type=Paper(),
+            type=PaperName(),
             metavar="NAME|WxH",
             help="Put the picture in the middle of a4, letter … or 210mmx297mm.  [default: the picture's size]",
         ),

@@ -18,7 +18,7 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
-class Output:
+class Medium:
     """What is written.
 
     endings: of files that `draw` writes so, with spaces between them. summary: first line of the subcommand's help.
@@ -52,13 +52,13 @@ class Option:
 
 
 OUTPUTS = {
-    "pack": Output(".penink", "Pack an illustration and its members in one small file.", "illustration", own=True),
-    "to-html": Output(".html", "Write an illustration as one web page that draws itself.", "illustration", own=True),
-    "to-ps": Output(".ps .eps", "Write strokes as PostScript.", own=True),
-    "to-svg": Output(".svg", "Write strokes as SVG, for drawing programs, the web, plotters.", own=True, screen=True),
-    "to-pdf": Output(".pdf", "Write strokes as a PDF page of vector paths.", binary=True),
-    "to-png": Output(".png", "Draw strokes into a PNG image, by the area that ink covers.", own=True, screen=True),
-    "to-pgm": Output(".pgm", "Draw strokes into a grey image, by the area that ink covers.", own=True, screen=True),
+    "pack": Medium(".penink", "Pack an illustration and its members in one small file.", "illustration", own=True),
+    "to-html": Medium(".html", "Write an illustration as one web page that draws itself.", "illustration", own=True),
+    "to-ps": Medium(".ps .eps", "Write strokes as PostScript.", own=True),
+    "to-svg": Medium(".svg", "Write strokes as SVG, for drawing programs, the web, plotters.", own=True, screen=True),
+    "to-pdf": Medium(".pdf", "Write strokes as a PDF page of vector paths.", binary=True),
+    "to-png": Medium(".png", "Draw strokes into a PNG image, by the area that ink covers.", own=True, screen=True),
+    "to-pgm": Medium(".pgm", "Draw strokes into a grey image, by the area that ink covers.", own=True, screen=True),
 }
 
 STROKES = ".jsonl"  # the strokes themselves, which no output writes

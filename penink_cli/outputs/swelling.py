@@ -129,7 +129,7 @@ def _unit(vectors: Floats, otherwise: Floats) -> Floats:
 
 
 @dataclass(frozen=True, eq=False)
-class Ends:
+class SwollenEnds:
     """What the outline needs to know at both ends of each segment; every array is (m, 2) or (m, 2, 2), start and end.
 
     along: direction. bend: |B'| · κ, positive to the left of `along` as the axes have it (x to y).
@@ -142,7 +142,7 @@ class Ends:
     growth: Floats
 
 
-def ends_of(segments: Segments) -> Ends:
+def ends_of(segments: Segments) -> SwollenEnds:
     """Directions, curvatures and growths at both ends of segments."""
     a, b, c = np.diff(segments.points, axis=1).transpose(1, 0, 2)
     chord = _unit(segments.points[:, 3] - segments.points[:, 0], np.array((1.0, 0.0)))
@@ -160,10 +160,10 @@ def ends_of(segments: Segments) -> Ends:
     pace = 3 * np.stack([first, last], axis=1)
     grows = (segments.widths[:, 1] - segments.widths[:, 0])[:, None] / 2
     growth = np.clip(grows / np.where(pace > TINY, pace, np.inf), -0.95, 0.95)
-    return Ends(np.stack([start, end], axis=1), bend, pace, growth)
+    return SwollenEnds(np.stack([start, end], axis=1), bend, pace, growth)
 
 
-def cuts(segments: Segments, ends: Ends) -> Mask:
+def cuts(segments: Segments, ends: SwollenEnds) -> Mask:
     """(m + 1,) whether a piece begins before each segment: at strokes' ends, at corners, around tight bends."""
     m = len(segments.owner)
     cut = np.ones(m + 1, bool)
@@ -196,7 +196,7 @@ def outlines(strokes: Strokes) -> tuple[Floats, Ints]:
     return _contours(np.flatnonzero(cut), left, right, segments.points[:, (0, 3)], radius, along, growth)
 
 
-def _shared(ends: Ends, inner: Mask) -> tuple[Floats, Floats]:
+def _shared(ends: SwollenEnds, inner: Mask) -> tuple[Floats, Floats]:
     """Directions (m, 2, 2) and growths (m, 2); where a piece goes on (m - 1,) the mean of both, so that sides meet."""
     along, growth = ends.along.copy(), ends.growth.copy()
     along[:-1, 1][inner] = along[1:, 0][inner] = _unit(along[:-1, 1] + along[1:, 0], along[1:, 0])[inner]
@@ -204,7 +204,7 @@ def _shared(ends: Ends, inner: Mask) -> tuple[Floats, Floats]:
     return along, growth
 
 
-def _side(segments: Segments, ends: Ends, along: Floats, growth: Floats, radius: Floats, hand: float) -> Floats:
+def _side(segments: Segments, ends: SwollenEnds, along: Floats, growth: Floats, radius: Floats, hand: float) -> Floats:
     """Control points (m, 4, 2) of one side: hand 1 is the left one, as the axes have it, -1 the right."""
     normal = np.stack([-along[..., 1], along[..., 0]], axis=-1)
     across = np.sqrt(1 - growth * growth)

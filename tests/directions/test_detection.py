@@ -10,7 +10,7 @@ from scipy.ndimage import gaussian_filter
 
 from penink_cli.arrangement.detection import detect_edges
 from penink_cli.directions.detection import detect_directions
-from penink_cli.directions.polylines import Polylines, crossed, of_lines, of_strokes
+from penink_cli.directions.polylines import WeightedLines, crossed, of_lines, of_strokes
 from penink_cli.directions.reading import at_size
 from penink_cli.directions.solving import singular, solved
 from penink_cli.formats import directions
@@ -142,7 +142,7 @@ def test_telling_lines_are_evidence():
 
 def test_lengths_and_angles_of_polylines_by_cell():
     points = np.array([[0, 0], [0.5, 0.5], [0.5, 2], [0.25, 0.1], [0.75, 0.1]])
-    vectors, length = crossed(Polylines(points, np.array([0, 3, 5]), np.ones(5)), 8, 8)
+    vectors, length = crossed(WeightedLines(points, np.array([0, 3, 5]), np.ones(5)), 8, 8)
     assert length.sum() == pytest.approx(4 * np.sqrt(2) + 4 + 4)  # what lies outside is not counted
     assert vectors[1, 1] == pytest.approx([0, np.sqrt(2)], abs=0.1) and vectors[6, 4] == pytest.approx([-1, 0])
     assert vectors[0, 3] == pytest.approx([1, 0])

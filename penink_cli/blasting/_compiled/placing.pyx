@@ -15,7 +15,7 @@ cdef double PAPER = 0.002
 cdef double WORTH = 0.05
 
 
-cdef class Sheet:
+cdef class Target:
     """What strokes are tried against.
 
     bits: the ink, a cell a word. residual, guide, weight: (rows, columns) cells: what is still due as the eye sees it,
@@ -46,7 +46,7 @@ cdef class Sheet:
         self.columns = residual.shape[1]
 
 
-cdef class Candidates:
+cdef class Tried:
     """Polylines that may be drawn: points (p, 2), and of each where it begins, its width, bit 0 and 1 for a wall at its
     start and end, the unit of its sideways moves, and the tone at which it is known to belong in a light place.
     """
@@ -102,28 +102,28 @@ cdef class Trial:
     due there, and room. total, best, start: of `runs`.
     """
 
-    cdef Candidates lines
+    cdef Tried lines
     cdef Terms terms
     cdef Py_ssize_t i, p0, p1
     cdef double ox, oy
     cdef double[::1] ink, own, due, fresh, total, best
     cdef long long[::1] start
 
-    def __init__(self, Candidates lines, Terms terms, Py_ssize_t longest) -> None:
+    def __init__(self, Tried lines, Terms terms, Py_ssize_t longest) -> None:
         self.lines = lines
         self.terms = terms
         self.ink, self.own, self.due, self.fresh, self.total, self.best = np.empty((6, longest))
         self.start = np.empty(longest, np.int64)
 
-    cdef void draw(self, Sheet sheet, Py_ssize_t p0, Py_ssize_t p1) noexcept nogil:
+    cdef void draw(self, Target target, Py_ssize_t p0, Py_ssize_t p1) noexcept nogil:
         """Ink the points p0 … p1, and take what is new from the residual."""
         cdef Py_ssize_t i, x, y
         cdef Py_ssize_t n = p1 - p0
         cdef float ink = 0.0
         cdef double[:, ::1] points = self.lines.points
         stroke(
-            &sheet.bits[0, 0, 0], sheet.rows, sheet.columns, &points[p0, 0], n, self.ox, self.oy,
-            self.lines.widths[self.i], sheet.gain, &self.fresh[0],
+            &target.bits[0, 0, 0], target.rows, target.columns, &points[p0, 0], n, self.ox, self.oy,
+            self.lines.widths[self.i], target.gain, &self.fresh[0],
         )
         for i in range(n if n > 0 else 1):
             ink += <float>self.fresh[i]
@@ -131,21 +131,21 @@ cdef class Trial:
             if ink > 0.0 and (i & 1 or i >= n - 1):
                 x = cell(points[p0 + i, 0] + self.ox)
                 y = cell(points[p0 + i, 1] + self.oy)
-                if 0 <= x < sheet.columns and 0 <= y < sheet.rows:
-                    splat(sheet.residual, sheet.guide, sheet.kernel, y, x, ink * 0.015625, sheet.step)
+                if 0 <= x < target.columns and 0 <= y < target.rows:
+                    splat(target.residual, target.guide, target.kernel, y, x, ink * 0.015625, target.step)
                 ink = 0.0
 
-    cdef Py_ssize_t gains(self, Sheet sheet) noexcept nogil:
+    cdef Py_ssize_t gains(self, Target target) noexcept nogil:
         """Fill in ink, due and own of each piece; returns their number. A dot is one piece.
         """
         cdef Py_ssize_t i, j, x, y
         cdef double dx, dy, mx, my, d, tone
         cdef double[:, ::1] points = self.lines.points
         cdef double[::1] ink = self.ink, own = self.own, due = self.due, share = self.fresh
-        cdef double[::1] profile = sheet.profile
-        cdef unsigned long long* bits = &sheet.bits[0, 0, 0]
-        cdef Py_ssize_t rows = sheet.rows, columns = sheet.columns, p0 = self.p0, p1 = self.p1
-        cdef double ox = self.ox, oy = self.oy, gain = sheet.gain
+        cdef double[::1] profile = target.profile
+        cdef unsigned long long* bits = &target.bits[0, 0, 0]
+        cdef Py_ssize_t rows = target.rows, columns = target.columns, p0 = self.p0, p1 = self.p1
+        cdef double ox = self.ox, oy = self.oy, gain = target.gain
         cdef double width = self.lines.widths[self.i], enters = self.lines.enters[self.i]
         cdef double lenience = self.terms.lenience
         cdef Py_ssize_t n = p1 - p0 if p1 > p0 else 1
@@ -174,8 +174,8 @@ cdef class Trial:
             x = 0 if x < 0 else (columns - 1 if x >= columns else x)
             y = 0 if y < 0 else (rows - 1 if y >= rows else y)
             # where part of the kernel is cut off, less is due for the same want of ink: both sides at full weight
-            due[i] = sheet.residual[y, x] / sheet.weight[y, x] + lenience * sheet.guide[y, x]
-            tone = sheet.guide[y, x]
+            due[i] = target.residual[y, x] / target.weight[y, x] + lenience * target.guide[y, x]
+            tone = target.guide[y, x]
             share[i] = tone if due[i] > 0.0 and tone > PAPER and tone > enters else 1e30
             own[i] = 0.0
         # the kernel along the stroke, by distance in quarter cells; pieces are 1/16 … 1 cell or so apart
@@ -239,7 +239,7 @@ cdef class Trial:
 
 
 def place(
-    Sheet sheet, Candidates lines, Terms terms, long long[::1] order, long long[:, :, ::1] runs, double[:, ::1] moved
+    Target target, Tried lines, Terms terms, long long[::1] order, long long[:, :, ::1] runs, double[:, ::1] moved
 ) -> None:
     """Try the polylines named in order, one after the other, and draw of each what is worth drawing.
 
@@ -297,7 +297,7 @@ def place(
             for j in range(terms.shifts.shape[0]):
                 trial.ox = nx * terms.shifts[j] * lines.spacing[i]
                 trial.oy = ny * terms.shifts[j] * lines.spacing[i]
-                n = trial.gains(sheet)
+                n = trial.gains(target)
                 if not whole and not strict:
                     value = trial.runs(n, least, least_wall)
                 elif not strict:
@@ -324,10 +324,10 @@ def place(
             if whole or strict:
                 runs[i, 0, 0] = p0
                 runs[i, 0, 1] = p1
-                trial.draw(sheet, p0, p1)
+                trial.draw(target, p0, p1)
                 continue
             if m != terms.shifts.shape[0] - 1:
-                n = trial.gains(sheet)
+                n = trial.gains(target)
                 trial.runs(n, least, least_wall)
             j = n
             found = 0
@@ -337,6 +337,6 @@ def place(
                     continue
                 runs[i, found, 0] = p0 + trial.start[j]
                 runs[i, found, 1] = p0 + j
-                trial.draw(sheet, p0 + trial.start[j], p0 + j)
+                trial.draw(target, p0 + trial.start[j], p0 + j)
                 found += 1
                 j = trial.start[j]
