@@ -49,12 +49,12 @@ KNOT_PT = 2.0
 TIP_PT, TAPER_PT, TAPER_SHARE, BLUNT = 0.05, 6.0, 0.4, 0.6
 #: Where a line goes on after a gap, points are no longer than so many times the gap.
 TAPER_GAP = 1.2
-#: LevelLines shorter than this are left out.
+#: Lines shorter than this are left out.
 SHORTEST_PT = 2.0
-#: LevelLines come as near to the frame as those of such a pen do. Along it, so far within, runs one that fills what their
+#: Lines come as near to the frame as those of such a pen do. Along it, so far within, runs one that fills what their
 #: round ends leave, where it is darker than this.
 FRAME_PEN_PT, RIM_PT, RIM_TONE = 1.15, 0.4, 0.6
-#: LevelLines along a field are moved so many times by such a part of how much further they are from one neighbour.
+#: Lines along a field are moved so many times by such a part of how much further they are from one neighbour.
 EVENINGS, EVENED = 5, 0.18
 #: Their ends are prolonged by so many samples at the most, while lines there are as far apart as this part of their
 #: distance.
@@ -279,7 +279,7 @@ def _cut(sheet: Sheet, lines: LevelLines, borders: walls.Walls, spacing: float, 
     )
 
 
-def _with_rim(sheet: Sheet, lines: LevelLines) -> tuple[Lines, int]:
+def _with_rim(sheet: Sheet, lines: LevelLines) -> tuple[LevelLines, int]:
     """The lines and four more along the frame; and how many there were."""
     w, h, d = sheet.width, sheet.height, RIM_PT
     corners = np.array([[d, d], [w - d, d], [w - d, h - d], [d, h - d], [d, d]])

@@ -30,11 +30,11 @@ def waves(x, y):
     return 0.6 * np.sin(x / 60) + 0.4 * np.sin(y / 80)
 
 
-def lines_of(f: phase.Field, level: float = 0.0) -> level_lines.Lines:
+def lines_of(f: phase.Field, level: float = 0.0) -> level_lines.LevelLines:
     return level_lines.level_lines(f, phase.solve(f, None, 3), level)
 
 
-def sorted_segments(lines: level_lines.Lines) -> np.ndarray:
+def sorted_segments(lines: level_lines.LevelLines) -> np.ndarray:
     """Every leg of all lines, whatever line it is in and which way it runs."""
     last = np.zeros(len(lines.points), bool)
     last[lines.first[1:] - 1] = True
@@ -161,7 +161,7 @@ def test_strokes_are_of_a_hands_length_and_near_their_line() -> None:
 
 def test_runs_that_are_wanted() -> None:
     points = np.column_stack([np.arange(20.0), np.zeros(20)])
-    lines = level_lines.Lines(points, np.array([0, 12, 20]), np.array([False, False]))
+    lines = level_lines.LevelLines(points, np.array([0, 12, 20]), np.array([False, False]))
     wanted = np.ones(20, bool)
     wanted[[4, 15]] = False
     runs, cut = pen_lines.live(lines, wanted)
@@ -171,7 +171,7 @@ def test_runs_that_are_wanted() -> None:
 
 
 def test_nothing_is_made_of_nothing() -> None:
-    none = level_lines.Lines(np.zeros((0, 2), np.float32), np.zeros(1, np.int64), np.zeros(0, bool))
+    none = level_lines.LevelLines(np.zeros((0, 2), np.float32), np.zeros(1, np.int64), np.zeros(0, bool))
     assert len(pen_lines.evened(none, 7.0).ring) == 0
     none = pen_lines.evened(none, 7.0)
     parts = pen_lines.cut(none, np.zeros(0), (34.0, 72.0), 7.0, 1)
