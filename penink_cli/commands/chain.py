@@ -187,6 +187,8 @@ def worded(option: str, value: Any) -> list[str]:
         value = "auto" if value is None else ",".join(map(repr, value))
     elif option == "target":
         value = ",".join(f"{share!r}:{grey!r}" for share, grey in value)
+    elif option == "at":
+        value = ",".join(map(repr, value))
     elif option == "color":
         value = "#" + "".join(f"{round(255 * part):02x}" for part in value)
     return [f"--{option}", said(value)]

@@ -132,6 +132,13 @@ _TOLD = {
 @click.option(
     "--max-bytes", type=click.IntRange(1), metavar="N", help="The best illustration of at most N bytes (.penink)."
 )
+@click.option(
+    "--pens",
+    "pens_file",
+    type=click.Path(allow_dash=True),
+    metavar="FILE",
+    help="The plotter's pens, as to-svg has it (.svg); if all are of one width, everything is drawn with that.",
+)
 @threads_option
 @verbose_option
 def draw(
@@ -322,10 +329,10 @@ def _page_words(ending: str, given: dict[str, Any]) -> list[str]:
     by = writer(ending)
     known = {parameter.name for parameter in found(by).params} if by else set()
     words: list[str] = []
-    for name in ("paper", "margin", "landscape", "colours", "order"):
+    for name in ("paper", "margin", "landscape", "at", "colours", "order", "pens_file"):
         if name not in given:
             continue
-        option = {"colours": "color"}.get(name, name)
+        option = {"colours": "color", "pens_file": "pens"}.get(name, name)
         if name not in known:
             raise click.UsageError(f"--{option} is of no use for {ending}")
         for value in given[name] if name == "colours" else (given[name],):

@@ -32,6 +32,7 @@ def subcommand(name: str) -> click.Command:
         paper: str | None,
         margin: float,
         landscape: bool,
+        at: tuple[float, float] | None,
         colours: tuple[tuple[float, float, float], ...],
         device_dpi: float | None,
         output: str | None,
@@ -40,7 +41,7 @@ def subcommand(name: str) -> click.Command:
         from penink_cli.outputs.page import lay_out
 
         layers = as_printed(read_layers(files), device_dpi)
-        page = lay_out(layers, paper, margin, landscape)
+        page = lay_out(layers, paper, margin, landscape, at)
         with writing(output, binary=kind.binary) as out:
             told = {option.name: options[option.name] for option in own}
             module.write(out, layers, page, colours_of(layers, colours), **told)

@@ -26,6 +26,7 @@ def _pixels(
     paper: str | None,
     margin: float,
     landscape: bool,
+    at: tuple[float, float] | None,
     dpi: float,
     bits: int,
     device_dpi: float | None,
@@ -46,7 +47,7 @@ def _pixels(
     if device_dpi is None and not png:  # nobody looks at it: what the strokes themselves cover
         device_dpi = 0.0
     layers = as_printed(read_layers(files), device_dpi)
-    page = lay_out(layers, paper, margin, landscape)
+    page = lay_out(layers, paper, margin, landscape, at)
     width, height = cover.size(page, dpi)
     check_size(width, height, max_pixels)
     if png and max(width, height) >= 2**31:

@@ -11,7 +11,7 @@ from penink_cli.ground.streams import writing
 from penink_cli.options.common import Finite, output_options
 from penink_cli.options.layers import colour_option, colours_of, files_argument, page_options, read_layers
 
-OF_STROKES = ("paper", "margin", "landscape", "colours", "device_dpi", "compress", "separations")
+OF_STROKES = ("paper", "margin", "landscape", "at", "colours", "device_dpi", "compress", "separations")
 OF_SELF = ("level", "readable")
 
 
@@ -38,6 +38,7 @@ def to_ps(
     paper: str | None,
     margin: float,
     landscape: bool,
+    at: tuple[float, float] | None,
     colours: tuple[tuple[float, float, float], ...],
     device_dpi: float | None,
     compress: bool,
@@ -81,7 +82,7 @@ def to_ps(
         from penink_cli.ground.device import narrowed
 
         layers = [narrowed(layer, device_dpi) for layer in layers]
-    page, inks = lay_out(layers, paper, margin, landscape), colours_of(layers, colours)
+    page, inks = lay_out(layers, paper, margin, landscape, at), colours_of(layers, colours)
     if separations and page.paper is None:
         page = replace(page, paper="plate")
     with writing(output, binary=False) as out:

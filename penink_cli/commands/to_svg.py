@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from penink_cli.ground.streams import writing
+from penink_cli.ground.streams import reading, source_name, writing
 from penink_cli.options.common import LENGTH, output_options, verbose_option
+from penink_cli.options.inputs import only_one_standard_input
 from penink_cli.options.layers import (
     as_printed,
     colour_option,
@@ -17,10 +18,14 @@ from penink_cli.options.layers import (
     for_a_pen,
     gain_option,
     page_options,
+    plotter_of,
     read_layers,
-    report_travel,
     travel_options,
+    travel_report,
 )
+
+if TYPE_CHECKING:
+    from penink_cli.formats.pens import Pen
 
 
 @click.command(name="to-svg")
@@ -40,6 +45,20 @@ from penink_cli.options.layers import (
     metavar="PEN",
     help="For a plotter: strokes that swell as parallel lines that make their width with a pen of this one.",
 )
+@click.option("--merge", is_flag=True, help="One path a width: a smaller file, which drawing programs open faster.")
+@click.option(
+    "--pens",
+    "pens_file",
+    type=click.Path(allow_dash=True),
+    metavar="FILE",
+    help="The plotter's pens (*.pens.json): a layer a pen, of the nearest colour and width, as an AxiDraw reads them.",
+)
+@click.option(
+    "--split-length",
+    type=LENGTH,
+    metavar="LENGTH",
+    help="Begin a new layer, before which an AxiDraw waits, where a pen has drawn so much.  [default: as --pens says]",
+)
 @travel_options
 @verbose_option
 @output_options
@@ -48,13 +67,21 @@ def to_svg(
     paper: str | None,
     margin: float,
     landscape: bool,
+    at: tuple[float, float] | None,
     colours: tuple[tuple[float, float, float], ...],
     device_dpi: float | None,
     centre_lines: bool,
     passes: float | None,
+    merge: bool,
+    pens_file: str | None,
+    split_length: float | None,
     order: bool,
     join: float,
+    pen: float | None,
     speed: float | None,
+    travel_speed: float | None,
+    accel: float | None,
+    lift: float | None,
     verbose: bool,
     output: str | None,
     quiet: bool,
@@ -66,24 +93,64 @@ def to_svg(
     filled. Several FILEs are layers, the first at the bottom, and Inkscape and vpype see them as
     layers. With --order a plotter draws them with little travel between them.
 
+    The time that is said with --speed, --lift, --accel, --travel-speed or --verbose is that of a plotter that speeds
+    up, slows down for corners and lifts its pen: an AxiDraw's, unless they say otherwise.
+
     \b
     penink to-svg photo.strokes.jsonl -o photo.svg
     penink to-svg --order --speed 50mm --paper a4 --margin 1cm photo.strokes.jsonl -o photo.svg
     """
     if centre_lines and passes is not None:
         raise click.UsageError("give one of --centre-lines and --passes")
-    from penink_cli.outputs import svg, swelling
+    if pens_file is not None and (pen is not None or colours):
+        raise click.UsageError(f"--pens says what --{'color' if pen is None else 'pen'} says")
+    only_one_standard_input(*(files or ("-",)), pens_file)
+    from penink_cli.outputs import penwork, svg, swelling
     from penink_cli.outputs.page import lay_out
+    from penink_cli.travel import clock
 
+    pens = None if pens_file is None else _pens(pens_file)
     layers = as_printed(read_layers(files), device_dpi)
     if centre_lines:
         layers = [replace(layer, knot_widths=None) for layer in layers]
     elif passes is not None:
         layers = [swelling.passes(layer, passes) for layer in layers]
-    page = lay_out(layers, paper, margin, landscape)
+    if pen is not None:
+        layers = [clock.with_one_pen(layer, pen) for layer in layers]
+    page = lay_out(layers, paper, margin, landscape, at)
+    inks = colours_of(layers, colours)
+    by: list[Pen | None] = [None] * len(layers)
+    if pens is not None:
+        found = penwork.by_pen(layers, pens)
+        if found:
+            layers, by = [strokes for strokes, _ in found], [own for _, own in found]
+        inks = colours_of(layers, ())
+    before = layers
     if order:
-        layers = for_a_pen(layers, join, speed, verbose, quiet)
-    else:
-        report_travel(layers, layers, speed, verbose)
+        layers = for_a_pen(layers, join, quiet, merge)
+    elif merge:
+        layers = [penwork.merged(layer) for layer in layers]
+    loads = [
+        (load, i)
+        for i, layer in enumerate(layers)
+        for load in penwork.loads(layer, by[i], split_length, first=i == 0)
+    ]
+    labels = [load.label(number, load.strokes.layer) for number, (load, _) in enumerate(loads, 1)]
+    drawn = [load.strokes for load, _ in loads]
+    if verbose or any(value is not None for value in (speed, travel_speed, accel, lift)):
+        plotter = plotter_of(speed, travel_speed, accel, lift)
+        seconds = clock.seconds_by_speeds(
+            [(load.strokes, None if load.pen is None else load.pen.speed) for load, _ in loads], plotter, page.x, page.y
+        )
+        line = travel_report(before, before if layers is before else layers, seconds)
+        waits = sum(load.waits for load, _ in loads)
+        click.echo(line + f" and {waits} pauses" * (waits > 0), err=True)
     with writing(output, binary=False) as out:
-        svg.write(out, layers, page, colours_of(layers, colours))
+        svg.write(out, drawn, page, [inks[i] for _, i in loads], labels, merge)
+
+
+def _pens(path: str) -> tuple[Pen, ...]:
+    from penink_cli.formats import pens
+
+    with reading(path) as stream:
+        return pens.read(stream, source_name(path))

@@ -16,13 +16,24 @@ PAPERS = {
 LIMIT = 1e6  # points; more than the biggest sheet of any of the formats
 
 
+def plain_name(name: str) -> str:
+    """A paper's name or size in small letters, ``30x21cm`` of ``30 × 21 cm``."""
+    return name.lower().replace("×", "x").replace(" ", "")
+
+
 def paper_size(name: str) -> tuple[float, float]:
-    """Width and height in points of a paper's name, or of WIDTHxHEIGHT as ``210mmx297mm``."""
+    """Width and height in points of a paper's name, or of WIDTHxHEIGHT as ``210x297mm``: one unit serves both.
+
+    >>> paper_size("11x17in") == paper_size("11inx17in") == (792.0, 1224.0)
+    True
+    """
     if name.lower() in PAPERS:
         return PAPERS[name.lower()]
-    sides = name.lower().split("x")
+    sides = plain_name(name).split("x")
     if len(sides) == 2:
         try:
+            if sides[0][-1:].isdigit():
+                sides[0] += sides[1].lstrip("0123456789.")
             width, height = map(parse_length, sides)
         except ParameterError:
             width = height = 0.0
@@ -31,5 +42,5 @@ def paper_size(name: str) -> tuple[float, float]:
     import difflib
 
     near = difflib.get_close_matches(name.lower(), PAPERS, n=1, cutoff=0.6)
-    hint = f"did you mean {near[0]}?" if near else f"known are {', '.join(PAPERS)} and sizes such as 210mmx297mm"
+    hint = f"did you mean {near[0]}?" if near else f"known are {', '.join(PAPERS)} and sizes such as 210x297mm"
     raise ParameterError(f"no paper {in_quotes(name)}; {hint}")

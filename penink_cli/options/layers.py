@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
@@ -12,10 +13,11 @@ import click
 from penink_cli.ground.errors import ParameterError, in_quotes
 from penink_cli.ground.papers import paper_size
 from penink_cli.ground.streams import reading, source_name
-from penink_cli.options.common import LENGTH, DeviceDpi, Length
+from penink_cli.options.common import LENGTH, DeviceDpi, Finite, Length
 
 if TYPE_CHECKING:  # numpy and what needs it are imported when there is work, not for a help text
     from penink_cli.ground.model import Strokes
+    from penink_cli.travel.clock import Plotter
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -61,12 +63,36 @@ class PaperName(click.ParamType):
 
 COLOUR = Colour()
 
+class Place(click.ParamType):
+    """``X,Y``, two lengths."""
+
+    name = "X,Y"
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> tuple[float, float]:
+        """x and y, points."""
+        if isinstance(value, tuple):
+            return value
+        parts = value.split(",")
+        if len(parts) != 2:
+            self.fail(f"{in_quotes(value)} is not a place such as 20mm,35mm", param, ctx)
+        x, y = (Length(zero=True).convert(part, param, ctx) for part in parts)
+        return x, y
+
+
 files_argument = click.argument("files", nargs=-1, metavar="[FILE]...", type=click.Path(allow_dash=True))
 
 
 def page_options(function: F) -> F:
-    """--paper, --margin and --landscape."""
+    """--paper, --margin, --landscape and --at."""
     for decorate in (
+        click.option(
+            "--at",
+            type=Place(),
+            metavar="X,Y",
+            help="Put the picture's top-left corner there on the page: 20mm,35mm.  [default: in the middle]",
+        ),
         click.option("--landscape", is_flag=True, help="Turn the paper's longer side across."),
         click.option(
             "--margin",
@@ -79,7 +105,7 @@ def page_options(function: F) -> F:
             "--paper",
             type=PaperName(),
             metavar="NAME|WxH",
-            help="Put the picture in the middle of a4, letter … or 210mmx297mm.  [default: the picture's size]",
+            help="Put the picture in the middle of a4, letter … or 300x210mm.  [default: the picture's size]",
         ),
     ):
         function = decorate(function)
@@ -117,25 +143,65 @@ def gain_option(function: F) -> F:
 
 
 def travel_options(function: F) -> F:
-    """--order, --join, --speed."""
+    """--order, --join, --pen, and what the time that a plotter takes depends on."""
     for decorate in (
+        click.option(
+            "--lift",
+            type=Finite(0, 60),
+            metavar="SECONDS",
+            help="That raising the pen takes, and lowering it: changes the time only.  [default: 0.12]",
+        ),
+        click.option(
+            "--accel",
+            type=LENGTH,
+            metavar="LENGTH",
+            help="A second, each second, with the pen down; twice as much when it is up. Changes the time only.  "
+            "[default: 200mm]",
+        ),
+        click.option(
+            "--travel-speed",
+            type=LENGTH,
+            metavar="LENGTH",
+            help="A second with the pen up: changes the time only.  [default: 200mm]",
+        ),
         click.option(
             "--speed",
             type=LENGTH,
             metavar="LENGTH",
-            help="Report how long a pen takes that draws and travels that far in a second: 50mm.",
+            help="A second with the pen down: changes the time only, which is said.  [default: 50mm]",
+        ),
+        click.option(
+            "--pen",
+            type=LENGTH,
+            metavar="LENGTH",
+            help="One pen of this width draws all: strokes become as wide, so that --join joins any that meet.",
         ),
         click.option(
             "--join",
             type=Length(zero=True),
             default="0.05",
             metavar="LENGTH",
-            help="With --order, draw strokes in one go whose ends are that near.  [default: 0.05pt]",
+            help="With --order, draw strokes of one width in one go whose ends are that near: fewer lifts.  "
+            "[default: 0.05pt]",
         ),
-        click.option("--order", is_flag=True, help="Order and turn the strokes so that a pen travels little."),
+        click.option(
+            "--order", is_flag=True, help="Order and turn the strokes so that a pen travels little: the order changes."
+        ),
     ):
         function = decorate(function)
     return function
+
+
+def plotter_of(
+    speed: float | None, travel_speed: float | None, accel: float | None, lift: float | None
+) -> Plotter:
+    """The plotter whose time is said; an AxiDraw but for what is given, lengths in points."""
+    from penink_cli.travel.clock import MM, Motion, Plotter
+
+    usual = Plotter()
+    down = Motion(speed * MM if speed else usual.down.speed, accel * MM if accel else usual.down.acceleration)
+    up = Motion(travel_speed * MM if travel_speed else usual.up.speed, 2 * down.acceleration, usual.up.corner)
+    return Plotter(down, up, usual.lift if lift is None else lift)
 
 
 def read_layers(files: Sequence[str]) -> list[Strokes]:
@@ -169,25 +235,24 @@ def colours_of(
     return [*chosen, *(of_code(layer.color or "#000000") for layer in layers[len(chosen) :])]
 
 
-def for_a_pen(
-    layers: Sequence[Strokes], join: float, speed: float | None, verbose: bool, quiet: bool
-) -> list[Strokes]:
-    """Each layer ordered, ends that meet joined; reported on standard error if asked for."""
+def for_a_pen(layers: Sequence[Strokes], join: float, quiet: bool, by_width: bool = False) -> list[Strokes]:
+    """Each layer ordered, ends that meet joined; by_width: the strokes of one width together, each width by itself."""
+    from penink_cli.ground.model import Strokes
     from penink_cli.options.progress import progress
     from penink_cli.travel.order import joined, ordered
 
     result = []
     with progress(2 * sum(map(len, layers)), "order", quiet) as advance:
         for layer in layers:
-            result.append(joined(ordered(layer, advance=advance), join))
-    report_travel(layers, result, speed, verbose)
-    return result
+            widths = sorted(set(layer.widths.tolist())) if by_width else []
+            parts = [layer.taken(layer.widths == width) for width in widths] or [layer]
+            found = [joined(ordered(part, advance=advance), join) for part in parts]
+            result.append(Strokes.joined(found) if len(found) > 1 else found[0])
+    return [replace(one, layer=layer.layer, color=layer.color) for one, layer in zip(result, layers, strict=True)]
 
 
-def report_travel(before: Sequence[Strokes], after: Sequence[Strokes], speed: float | None, verbose: bool) -> None:
-    """Drawn and travelled length, and the time at a speed (points a second), on standard error."""
-    if speed is None and not verbose:
-        return
+def travel_report(before: Sequence[Strokes], after: Sequence[Strokes], seconds: float) -> str:
+    """Drawn and travelled length, and the time, in a line."""
     from penink_cli.travel.order import drawn_length, travel_length
 
     mm = 25.4 / 72
@@ -197,7 +262,5 @@ def report_travel(before: Sequence[Strokes], after: Sequence[Strokes], speed: fl
     line = f"{count} strokes: {drawn / 1000:.2f} m drawn, {travelled / 1000:.2f} m travelled with the pen up"
     if before is not after:
         line += f" ({was / 1000:.2f} m before)"
-    if speed is not None:
-        seconds = round((drawn + travelled) / (speed * mm))
-        line += f", {seconds // 3600}:{seconds // 60 % 60:02d}:{seconds % 60:02d} at {speed * mm:g} mm/s"
-    click.echo(line, err=True)
+    whole = round(seconds)
+    return f"{line}, {whole // 3600}:{whole // 60 % 60:02d}:{whole % 60:02d} on the plotter"

@@ -9,7 +9,7 @@ import numpy as np
 
 from penink_cli.ground.errors import ParameterError
 from penink_cli.ground.model import Floats, Strokes
-from penink_cli.ground.papers import LIMIT, paper_size
+from penink_cli.ground.papers import LIMIT, PAPERS, paper_size, plain_name
 
 
 @dataclass(frozen=True)
@@ -28,31 +28,44 @@ class Page:
 
 
 def lay_out(
-    layers: Sequence[Strokes], paper: str | None = None, margin: float = 0.0, landscape: bool = False
-) -> Page:
+    layers: Sequence[Strokes], paper: str | None = None, margin: float = 0.0, landscape: bool = False,
+    at: tuple[float, float] | None = None,
+) -> Page:  # fmt: skip
     """Put the sheet, at its own size, in the middle of the paper, or on a page that leaves a margin around it.
 
-    margin: points. landscape turns the paper's longer side across.
+    margin: points. landscape turns the paper's longer side across; without it a paper lies upright that has a name, and
+    one of a size as that is written. at: x and y of the sheet's top-left corner on the page.
     Raises ParameterError where the sheet and the margins are larger than the paper.
     """
     width, height = max(s.width for s in layers), max(s.height for s in layers)
+    x, y = at or (margin, margin)
     if paper is None:
-        page = Page(width + 2 * margin, height + 2 * margin, margin, margin)
+        page = Page(x + width + margin, y + height + margin, x, y)
         if max(page.width, page.height) > LIMIT:
             size = f"{page.width:.0f} x {page.height:.0f}"
             raise ParameterError(f"a page of {size} points; up to {LIMIT:.0f} are possible")
         return page
-    short, long = sorted(paper_size(paper))
-    page_width, page_height = (long, short) if landscape else (short, long)
+    page_width, page_height = turned_paper(paper, landscape)
     room_x, room_y = page_width - 2 * margin, page_height - 2 * margin
+    if at is not None:
+        room_x, room_y = page_width - x - margin, page_height - y - margin
     if width > room_x + 0.01 or height > room_y + 0.01:
         scale = min(room_x / width, room_y / height)
         advice = f"blast it {width * scale / 72:.2f}in wide or less" if scale > 0.01 else "the margin leaves no room"
         size = f"{width / 72:.2f} x {height / 72:.2f} in"
         room = f"{max(room_x, 0) / 72:.2f} x {max(room_y, 0) / 72:.2f} in"
         raise ParameterError(f"the picture, {size}, is larger than {paper} less its margins, {room}: {advice}")
-    x, y = (page_width - width) / 2, (page_height - height) / 2
-    return Page(page_width, page_height, x, y, paper.lower(), landscape)
+    if at is None:
+        x, y = (page_width - width) / 2, (page_height - height) / 2
+    return Page(page_width, page_height, x, y, plain_name(paper), landscape)
+
+
+def turned_paper(paper: str, landscape: bool) -> tuple[float, float]:
+    """Width and height of a paper as it is to lie."""
+    width, height = paper_size(paper)
+    if landscape:
+        return max(width, height), min(width, height)
+    return (width, height) if paper.lower() not in PAPERS else (min(width, height), max(width, height))
 
 
 def ink_box(strokes: Strokes) -> tuple[float, float, float, float] | None:

@@ -23,11 +23,17 @@ BATCH = 20000
 
 
 def write(
-    out: Sink, layers: Sequence[Strokes], page: Page, colours: Sequence[tuple[float, float, float]] = ()
+    out: Sink,
+    layers: Sequence[Strokes],
+    page: Page,
+    colours: Sequence[tuple[float, float, float]] = (),
+    labels: Sequence[str] = (),
+    merge: bool = False,
 ) -> None:
     """Write an SVG 1.1 file; the first layer is at the bottom. Colours: red, green, blue (0 … 1) of each layer.
 
-    Where there are several, a layer's ink is transparent for what lies below.
+    Where there are several, a layer's ink is transparent for what lies below. labels: names of the layers, their
+    numbers and their own names unless given. merge: one path for strokes of one width that stand together.
     """
     colours = [colours[i] if i < len(colours) else inks.BLACK for i in range(len(layers))]
     blend = ' style="mix-blend-mode:multiply"' if inks.overprint(colours) else ""
@@ -38,7 +44,8 @@ def write(
         f'     version="1.1" width="{width}mm" height="{height}mm" viewBox="0 0 {width} {height}">\n'.encode()
     )
     for i, layer in enumerate(layers):
-        label = f"{i + 1} {_xml(layer.layer)}" if layer.layer else f"{i + 1}"
+        label = f"{i + 1} {layer.layer}" if layer.layer else f"{i + 1}"
+        label = _xml(labels[i] if labels else label)
         red, green, blue = colours[i]
         colour = f"#{_hex(red)}{_hex(green)}{_hex(blue)}"
         swells = layer.swells
@@ -50,8 +57,9 @@ def write(
             f'   fill="none" stroke="{colour}" stroke-width="{plain(pen * MM, 4)}" '
             f'stroke-linecap="round" stroke-linejoin="round"{blend}>\n'.encode()
         )
-        for start in range(0, len(layer), BATCH):
-            out.write(_paths(layer, start, min(start + BATCH, len(layer)), page, pen))
+        batch = max(1, len(layer)) if merge else BATCH
+        for start in range(0, len(layer), batch):
+            out.write(_paths(layer, start, min(start + batch, len(layer)), page, pen, merge))
         if wide is not None:
             out.write(f'<g fill="{colour}" stroke="none">\n'.encode())
             for start in range(0, len(wide), BATCH):
@@ -61,8 +69,11 @@ def write(
     out.write(b"</svg>\n")
 
 
-def _paths(layer: Strokes, start: int, stop: int, page: Page, usual: float) -> memoryview:
-    """Strokes start … stop - 1, each a path: M x y and cubic segments relative to where they begin."""
+def _paths(layer: Strokes, start: int, stop: int, page: Page, usual: float, merge: bool) -> memoryview:
+    """Strokes start … stop - 1, each a path: M x y and cubic segments relative to where they begin.
+
+    merge: those of one width that follow one another are one path, each a subpath.
+    """
     first = layer.first[start : stop + 1] - layer.first[start]
     counts = np.diff(first)
     numbers = _relative(layer.points[layer.first[start] : layer.first[stop]], first, page)
@@ -75,6 +86,10 @@ def _paths(layer: Strokes, start: int, stop: int, page: Page, usual: float) -> m
     after = np.zeros((len(numbers), 2), np.int32)
     after[first[:-1], 1] = 1
     after[first[1:] - 1, 1] = 3 + pen + np.where(counts == 1, len(ends), 0)
+    if merge:
+        table += [b"M", b"h.001M"]
+        goes_on = np.append(pen[1:] == pen[:-1], False)
+        after[(first[1:] - 1)[goes_on], 1] = 3 + 2 * len(ends) + (counts[goes_on] == 1)
     body = words.text(numbers.ravel(), after.ravel(), table, DECIMALS)
     return memoryview(begin + bytes(body[: len(body) - len(begin)]))
 

@@ -69,6 +69,12 @@ def _texture(data: bytes) -> Any:
     return texture.read(io.BytesIO(data), SOURCE)
 
 
+def _pens(data: bytes) -> Any:
+    from penink_cli.formats import pens
+
+    return pens.read(io.BytesIO(data), SOURCE)
+
+
 def _archive(data: bytes) -> Any:
     from penink_cli.formats import archive
 
@@ -115,6 +121,7 @@ READERS: dict[str, Callable[[bytes], Any]] = {
     "texture": _texture,
     "illustration": _illustration,
     "archive": _archive,
+    "pens": _pens,
     "compact": _compact,
 }
 

@@ -23,6 +23,10 @@ TEXTURE = {
     "format": "penink-texture", "version": 1, "name": "t", "width": 9, "height": 9, "whole": False,
     "strokes": [{"priority": 0, "width": 0.4, "points": [[0, 8], [3, 8], [6, 9], [9, 9]]}],
 }  # fmt: skip
+PENS = {
+    "format": "penink-pens", "version": 1, "pens": [
+        {"name": "fine", "width": 0.85, "color": "#10A0ff", "speed": 142, "refill": "30cm"}, {"name": "b", "width": "1mm"}],
+}  # fmt: skip
 ILLUSTRATION = {
     "format": "penink-illustration", "version": 1, "width": 9, "height": 9,
     "layers": [{"name": "l", "samples": "a", "edges": "a.edges", "pen": 0.5, "outline": {"regions": [[1, 1]]}}],
@@ -60,6 +64,8 @@ def seeds(reader: str) -> Iterator[bytes]:
         yield b'{"seed":1,"layer":"\\u00e9","version":1,"format":"penink-strokes","height":1e1,"width":9}\r\n'
     if reader == "texture":
         yield json.dumps(TEXTURE).encode()
+    if reader == "pens":
+        yield json.dumps(PENS).encode()
     if reader == "illustration":
         yield json.dumps(ILLUSTRATION).encode()
     if reader == "archive":
