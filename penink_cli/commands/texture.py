@@ -157,7 +157,8 @@ def import_svg(
     """Make a texture of an SVG drawing.
 
     Its paths, lines and shapes become strokes, in their order, which is the priority: what is drawn first comes
-    first. The drawing's size is the tile's. Text and images are left out: turn text to paths first.
+    first. The drawing's size is the tile's. What leaves no ink is left out, as are text and images: what is invisible
+    or white, and a background. Turn text to paths first.
 
     With --oriented they are examples, of the size they are drawn in, that `blast --directions` bends along the form.
 

@@ -143,7 +143,7 @@ def to_svg(
             [(load.strokes, None if load.pen is None else load.pen.speed) for load, _ in loads], plotter, page.x, page.y
         )
         line = travel_report(before, before if layers is before else layers, seconds)
-        waits = sum(load.waits for load, _ in loads)
+        waits = len([load for load, _ in loads if load.waits])
         click.echo(line + f" and {waits} pauses" * (waits > 0), err=True)
     with writing(output, binary=False) as out:
         svg.write(out, drawn, page, [inks[i] for _, i in loads], labels, merge)

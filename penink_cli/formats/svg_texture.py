@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import io
+import math
+import re
 from collections.abc import Callable
 from typing import Any, BinaryIO
+from xml.etree import ElementTree
 from xml.etree.ElementTree import ParseError
 
 import numpy as np
 
 from penink_cli.formats.strokes import LIMIT
+from penink_cli.ground import exact
 from penink_cli.ground.errors import FormatError
 from penink_cli.ground.model import Floats, Strokes, Texture
 
@@ -17,6 +21,8 @@ MAX_BYTES = 64 << 20
 MAX_STROKES = 500_000
 POINTS_PER_PIXEL = 0.75  # CSS: 96 pixels to the inch
 USUAL_PEN_PT = 0.4
+WHITE = 250  # of 255: a colour that has so much of all three leaves no ink
+CHORDS = 32  # by which a segment's length is told where it is cut in dashes
 CLOSED = 1e-6  # pixels: arcs do not come round to the very digit, and a shape is closed all the same
 
 
@@ -30,9 +36,10 @@ def read(
 ) -> Texture:
     """The texture that an SVG drawing makes.
 
-    Everything that has an outline counts, filled or not: paths, lines, polygons, circles …, their transforms applied;
-    a subpath is a stroke. The tile is the drawing's size. pen_pt: the width of all strokes; by default each
-    one's stroke-width, or 0.4 pt where it has none. report: told what is left out, text and images. Raises FormatError.
+    Paths, lines, polygons, circles … that leave ink count, their transforms applied: along what is stroked, dashes as
+    dashes, and around what is only filled; a subpath is a stroke. The tile is the drawing's size. pen_pt: the width of
+    all strokes; by default each one's stroke-width, or 0.4 pt where it has none. report: told what is left out: what is
+    invisible or white, a background, text and images. Raises FormatError.
     """
     text = stream.read(MAX_BYTES + 1)
     try:
@@ -49,7 +56,7 @@ def _parse(text: bytes) -> Any:
     import svgelements
 
     try:
-        drawing = svgelements.SVG.parse(io.BytesIO(text), reify=True, ppi=96.0)
+        drawing = svgelements.SVG.parse(io.BytesIO(_seen(text)), reify=True, ppi=96.0)
     except ParseError as error:
         raise FormatError(f"not SVG: {error}") from None
     except (ValueError, TypeError, AttributeError, IndexError, KeyError, ZeroDivisionError, RecursionError) as error:
@@ -60,6 +67,36 @@ def _parse(text: bytes) -> Any:
     return drawing
 
 
+def _seen(text: bytes) -> bytes:
+    """The drawing without what its parser would show: what stands in a group of no opacity, symbols outside of defs."""
+    if b"opacity" not in text and b"symbol" not in text:
+        return text
+    tree = ElementTree.fromstring(text)
+    changed = False
+    for parent in list(tree.iter()):
+        for i, element in enumerate(parent):
+            if not isinstance(element.tag, str):
+                continue
+            pairs = (part.partition(":") for part in element.get("style", "").split(";"))
+            own = {name.strip(): value.strip() for name, _, value in pairs}
+            opacity = own.get("opacity", element.get("opacity", "1")).strip()
+            if len(element) and re.fullmatch(r"0*\.?0*%?", opacity) and re.search("0", opacity):
+                element.set("style", "display:none")
+                element.set("display", "none")
+                changed = True
+            kind = element.tag.rpartition("}")
+            if kind[2] == "symbol" and parent.tag != f"{kind[0]}{kind[1]}defs":
+                defs = ElementTree.Element(f"{kind[0]}{kind[1]}defs")
+                defs.append(element)
+                parent[i] = defs
+                changed = True
+    if not changed:
+        return text
+    ElementTree.register_namespace("", "http://www.w3.org/2000/svg")
+    ElementTree.register_namespace("xlink", "http://www.w3.org/1999/xlink")
+    return ElementTree.tostring(tree)
+
+
 def _texture(drawing: Any, name: str, pen_pt: float | None, whole: bool, report: Callable[[str], None]) -> Texture:
     import svgelements
 
@@ -68,23 +105,34 @@ def _texture(drawing: Any, name: str, pen_pt: float | None, whole: bool, report:
         raise FormatError("the drawing has no size: width and height, or a viewBox, are needed")
     strokes: list[Floats] = []
     widths: list[float] = []
-    left_out = {"text": 0, "image": 0}
+    left_out = {"invisible shape": 0, "white shape": 0, "background": 0, "text": 0, "image": 0}
+    clipped = 0
     for element in drawing.elements():
         if isinstance(element, (svgelements.Text, svgelements.Image)):
             left_out["image" if isinstance(element, svgelements.Image) else "text"] += 1
-        if not isinstance(element, svgelements.Shape) or element.values.get("visibility") == "hidden":
+        if not isinstance(element, svgelements.Shape):
             continue
-        width = _number(element.stroke_width) * POINTS_PER_PIXEL if element.stroke.value is not None else 0.0
-        for control in _chains(svgelements.Path(element)):
+        chains = _chains(svgelements.Path(element))
+        paint = _paint(element, chains, size)
+        if paint in left_out:
+            left_out[paint] += 1
+            continue
+        clipped += element.values.get("clip-path", "none") != "none"
+        width = _number(element.stroke_width) * POINTS_PER_PIXEL if paint == "stroke" else 0.0
+        if paint == "stroke" and (pattern := _dashes(element)):
+            chains = [part for control in chains for part in _dashed(control, *pattern)]
+        for control in chains:
             strokes.append(control * POINTS_PER_PIXEL)
             widths.append(pen_pt or (width if width >= 0.0001 else USUAL_PEN_PT))
             if len(strokes) > MAX_STROKES:
                 raise FormatError(f"more than {MAX_STROKES} strokes")
-    dropped = " and ".join(f"{count} {what}{'s' * (count > 1)}" for what, count in left_out.items() if count)
+    parts = [f"{count} {what}{'s' * (count > 1)}" for what, count in left_out.items() if count]
+    dropped = " and ".join([", ".join(parts[:-1]), parts[-1]] if len(parts) > 1 else parts)
     if not strokes:
-        raise FormatError(f"no path, line or shape in the drawing{', only ' * bool(dropped)}{dropped}")
-    if dropped:
-        report(f"{dropped} left out; turn text to paths to have it")
+        raise FormatError(f"no path, line or shape that leaves ink in the drawing{', only ' * bool(dropped)}{dropped}")
+    said = [f"{dropped} left out" + "; turn text to paths to have it" * bool(left_out["text"])] if dropped else []
+    if said + [clipped] * bool(clipped):
+        report("; ".join([*said, *[f"{clipped} clipped, and drawn whole"] * bool(clipped)]))
     points = np.concatenate(strokes)
     if not (np.abs(points) <= LIMIT).all():
         raise FormatError(f"a coordinate that is no number, or is beyond ±{LIMIT:.0f} pt")
@@ -94,6 +142,114 @@ def _texture(drawing: Any, name: str, pen_pt: float | None, whole: bool, report:
         size[0] * POINTS_PER_PIXEL, size[1] * POINTS_PER_PIXEL, points, first, np.array(widths), texture=name
     )
     return Texture(name, tile, np.arange(len(strokes), dtype=np.float64), whole)
+
+
+def _paint(element: Any, chains: list[Floats], size: list[float]) -> str:
+    """What leaves ink of a shape, "stroke" or "fill"; or what it is that leaves none."""
+    values = element.values
+    if values.get("visibility") in ("hidden", "collapse") or _opacity(values.get("opacity")) <= 0 or not chains:
+        return "invisible shape"
+    stroke, fill = (_colour(paint) for paint in (element.stroke, element.fill))
+    if stroke and _number(element.stroke_width) <= 0:
+        stroke = ""
+    if stroke == "ink":
+        return "stroke"
+    if fill == "ink":
+        return "background" if _covers(chains, size) else "fill"
+    return "white shape" if "white" in (stroke, fill) else "invisible shape"
+
+
+def _colour(paint: Any) -> str:
+    """"ink", "white", or nothing."""
+    if paint is None or paint.value is None or paint.opacity <= 0:
+        return ""
+    return "white" if min(paint.red, paint.green, paint.blue) >= WHITE else "ink"
+
+
+def _opacity(text: Any) -> float:
+    try:
+        text = str(text or 1).strip()
+        return float(text[:-1]) / 100 if text.endswith("%") else float(text)
+    except ValueError:
+        return 1.0
+
+
+def _covers(chains: list[Floats], size: list[float]) -> bool:
+    """Whether a shape is one rectangle at most, as large as the drawing."""
+    if len(chains) != 1 or len(chains[0]) > 3 * 4 + 1:
+        return False
+    low, high = chains[0].min(axis=0), chains[0].max(axis=0)
+    slack = 0.01 * np.array(size)
+    return bool((low <= slack).all() and (high >= np.array(size) - slack).all())
+
+
+def _dashes(element: Any) -> tuple[list[float], float] | None:
+    """Lengths of dashes and gaps by turns, and the offset, in pixels; None for a solid line."""
+    import svgelements
+
+    words = re.split(r"[,\s]+", str(element.values.get("stroke-dasharray") or "none").strip())
+    try:
+        matrix = svgelements.Matrix(element.values.get("transform") or "")
+        scale = math.sqrt(abs(matrix.a * matrix.d - matrix.b * matrix.c))
+        lengths = [float(svgelements.Length(word).value(ppi=96.0)) * scale for word in words]
+        offset = svgelements.Length(str(element.values.get("stroke-dashoffset") or 0)).value(ppi=96.0)
+        offset = float(offset) * scale
+    except (TypeError, ValueError, AttributeError):  # none, or percentages
+        return None
+    if min(lengths) < 0 or not 0 < math.fsum(lengths) < LIMIT or not abs(offset) < LIMIT:
+        return None
+    return lengths * (1 + len(lengths) % 2), offset
+
+
+def _dashed(control: Floats, lengths: list[float], offset: float) -> list[Floats]:
+    """The pieces of a chain of cubics (3k + 1, 2) that dashes leave."""
+    t = np.arange(CHORDS + 1)[:, None] / CHORDS
+    segments = [control[k : k + 4] for k in range(0, len(control) - 1, 3)]
+    way: list[Floats] = []
+    for a, b, c, d in segments:
+        u = 1 - t
+        curve = u * u * u * a + 3 * t * u * u * b + 3 * t * t * u * c + t * t * t * d
+        way.append(np.cumsum(np.append(0.0, exact.length(np.diff(curve, axis=0)))))
+    ends = np.cumsum([0.0, *(w[-1] for w in way)])
+    period = math.fsum(lengths)
+    if ends[-1] / period * len(lengths) > 2 * MAX_STROKES:
+        raise FormatError(f"more than {MAX_STROKES} dashes")
+    if not segments:
+        return [control]
+    pieces = []
+    at, k = -(offset % period), 0
+    while at < ends[-1]:
+        begin, end = max(at, 0.0), min(at + lengths[k], float(ends[-1]))
+        if k % 2 == 0 and end >= begin and at + lengths[k] >= 0:
+            piece = _between(segments, way, ends, begin, end)
+            if len(piece):
+                pieces.append(piece)
+        at, k = at + lengths[k], (k + 1) % len(lengths)
+    return pieces
+
+
+def _between(segments: list[Floats], way: list[Floats], ends: Floats, begin: float, end: float) -> Floats:
+    """The part of a chain between two lengths along it; a dot where they are one."""
+    points: list[Floats] = []
+    for i, segment in enumerate(segments):
+        if end < ends[i] or begin > ends[i + 1] or (begin == ends[i + 1] and begin < end):
+            continue
+        places = np.arange(CHORDS + 1) / CHORDS
+        u, v = (float(np.interp(x - ends[i], way[i], places)) for x in (begin, end))
+        if v < u or (u == v and begin < end):
+            continue
+
+        def polar(*at: float, p: Floats = segment) -> Floats:
+            for t in at:
+                p = p[:-1] + (p[1:] - p[:-1]) * t
+            return p[0]
+
+        if not points:
+            points.append(polar(u, u, u))
+        if begin == end:
+            break
+        points += [polar(u, u, v), polar(u, v, v), polar(v, v, v)]
+    return np.array(points).reshape(-1, 2)
 
 
 def _number(value: Any) -> float:

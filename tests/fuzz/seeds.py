@@ -25,7 +25,8 @@ TEXTURE = {
 }  # fmt: skip
 PENS = {
     "format": "penink-pens", "version": 1, "pens": [
-        {"name": "fine", "width": 0.85, "color": "#10A0ff", "speed": 142, "refill": "30cm"}, {"name": "b", "width": "1mm"}],
+        {"name": "fine", "width": 0.85, "color": "#10A0ff", "speed": 142, "refill": "30cm"},
+        {"name": "b", "width": "1mm"}],
 }  # fmt: skip
 ILLUSTRATION = {
     "format": "penink-illustration", "version": 1, "width": 9, "height": 9,
