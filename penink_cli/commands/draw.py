@@ -102,7 +102,7 @@ _TOLD = {
     metavar="NAME|FILE",
     help="A shipped texture (see penink texture list) or a texture file.  [default: the style's]",
 )
-@click.option("--width", type=LENGTH, help="Width on paper: 4in, 100mm.  [default: 6in]")
+@click.option("--width", type=LENGTH, help="Width on paper: 4in, 100mm.  [default: 6in, or what --paper holds]")
 @click.option("--height", type=LENGTH, help="Height on paper, instead of --width.")
 @click.option("--pen", type=LENGTH, help="Draw everything with one pen of this width.  [default: the style's]")
 @click.option("--gamma", type=Finite(0.05, 20), metavar="G", help="Tone curve: grey is raised to it.  [default: 1]")
@@ -135,7 +135,7 @@ _TOLD = {
 @click.option(
     "--pens",
     "pens_file",
-    type=click.Path(allow_dash=True),
+    type=click.Path(),
     metavar="FILE",
     help="The plotter's pens, as to-svg has it (.svg); if all are of one width, everything is drawn with that.",
 )
@@ -169,7 +169,7 @@ def draw(
 
     \b
     penink draw photo.jpg -o photo.pdf
-    penink draw photo.jpg --style engraving --width 24in --device-dpi 1200 | lpr
+    penink draw photo.jpg --style engraving --paper a4 --margin 15mm --device-dpi 1200 | lpr
     penink draw *.jpg --as svg --out-dir drawings
     penink draw photo.jpg --directions strokes.svg --watch -o photo.html
     """
@@ -180,7 +180,7 @@ def draw(
         raise click.UsageError(f"--max-bytes is of no use for {ending}")
     if width is not None and height is not None:
         raise click.UsageError("give one of --width and --height")
-    read = [path for name in ("mask", "directions_file") if (path := given.get(name)) is not None]
+    read = [path for name in ("mask", "directions_file", "pens_file") if (path := given.get(name)) is not None]
     dashes = [path for path in (style_name, given.get("texture_name")) if path == "-"]
     if out_dir is None and len(files) > 1:
         raise click.UsageError("several photos need --out-dir DIR")
@@ -194,6 +194,8 @@ def draw(
     if inks is not None and (ending == STROKES or "colours" in given):
         why = f"{ending} has one colour" if ending == STROKES else "--color says what --inks says"
         raise click.UsageError(f"--inks: {why}")
+    if "pens_file" in given and "pen" not in given:
+        given |= _one_width(given["pens_file"])
     style = find_style(style_name)
     check(style, style_name)
     call = _Call(context.params, given, ending, page, style)
@@ -303,7 +305,8 @@ def _draw(
         rows, columns = shape[:2]
         if options["height"] is not None:
             width = options["height"] * columns / rows
-        width = USUAL_WIDTH if width is None else width
+        if width is None:
+            width = min(USUAL_WIDTH, _room(given, rows / columns))
         check_sheet(width, width * rows / columns, max_pixels)
         taken = (file, output, given.get("mask"), given.get("directions_file"), given.get("texture_name"))
         limit = max_pixels if "max_pixels" in given else None
@@ -318,6 +321,30 @@ def _draw(
 
 
 draw.help = (draw.help or "").replace("ENDINGS", ", ".join(endings()))
+
+
+def _one_width(path: str) -> dict[str, Any]:
+    """The width of the pens of a file, where all have the same."""
+    from penink_cli.formats import pens
+
+    with streams.reading(path) as stream:
+        widths = {pen.width for pen in pens.read(stream, streams.source_name(path))}
+    return {"pen": widths.pop()} if len(widths) == 1 else {}
+
+
+def _room(given: dict[str, Any], aspect: float) -> float:
+    """The widest that a picture of that aspect (height over width) can be on the paper that is given."""
+    if "paper" not in given:
+        return math.inf
+    from penink_cli.outputs.page import turned_paper
+
+    across, down = turned_paper(given["paper"], given.get("landscape", False))
+    margin = given.get("margin", 0.0)
+    left, top = given.get("at", (margin, margin))
+    width, height = across - left - margin, down - top - margin
+    # a sheet is whole pixels of grey high, half a point each; where nothing fits the page says so
+    room = math.floor(min(width, (height - 0.5) / aspect) * 100) / 100
+    return room if room > 0 else math.inf
 
 
 def _is_given(context: click.Context, name: str) -> bool:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from penink_cli.ground.codes import code_of
 from penink_cli.ground.streams import reading, source_name, writing
 from penink_cli.options.common import LENGTH, output_options, verbose_option
 from penink_cli.options.inputs import only_one_standard_input
@@ -102,8 +103,8 @@ def to_svg(
     """
     if centre_lines and passes is not None:
         raise click.UsageError("give one of --centre-lines and --passes")
-    if pens_file is not None and (pen is not None or colours):
-        raise click.UsageError(f"--pens says what --{'color' if pen is None else 'pen'} says")
+    if pens_file is not None and pen is not None:
+        raise click.UsageError("--pens says what --pen says")
     only_one_standard_input(*(files or ("-",)), pens_file)
     from penink_cli.outputs import penwork, svg, swelling
     from penink_cli.outputs.page import lay_out
@@ -121,6 +122,7 @@ def to_svg(
     inks = colours_of(layers, colours)
     by: list[Pen | None] = [None] * len(layers)
     if pens is not None:
+        layers = [replace(layer, color=code_of(ink)) for layer, ink in zip(layers, inks, strict=True)]
         found = penwork.by_pen(layers, pens)
         if found:
             layers, by = [strokes for strokes, _ in found], [own for _, own in found]

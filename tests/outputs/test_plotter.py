@@ -371,3 +371,34 @@ def test_the_readmes_plotter_draws_every_stroke(tmp_path, penink):
         command = [program, "read", str(tmp_path / "a.svg"), *vpype[vpype.index("write") :]]
         subprocess.run([*command[:-1], str(tmp_path / "a.hpgl")], check=True, capture_output=True)
         assert pen_downs((tmp_path / "a.hpgl").read_text()) == len(found)
+
+
+@pytest.mark.parametrize(("columns", "rows"), [(18, 32), (24, 24), (32, 18)])
+@pytest.mark.parametrize("paper", [("a4",), ("letter", "--landscape"), ("100x150mm",)])
+def test_a_drawing_for_a_paper_is_as_large_as_that_holds(tmp_path, penink, columns, rows, paper):
+    from PIL import Image
+
+    y, x = np.mgrid[0:rows, 0:columns]
+    Image.fromarray((40 + 5 * x + 2 * y).astype(np.uint8)).save(tmp_path / "photo.png")
+    done = penink("draw", "--style", "true", "--paper", *paper, "--margin", "15mm", str(tmp_path / "photo.png"))
+    assert done.returncode == 0, done.stderr
+    page = [float(v) for v in re.search(rb"PageSize \[([0-9.]+) ([0-9.]+)\]", done.stdout).groups()]
+    x0, y0, x1, y1 = (float(v) for v in re.search(rb"HiResBoundingBox: (.*)\n", done.stdout)[1].split())
+    assert min(x0, y0, page[0] - x1, page[1] - y1) > 12 * MM  # all of it, with strokes that reach over the sheet
+    room = np.array(page) - 30 * MM
+    assert max((x1 - x0) / room[0], (y1 - y0) / room[1]) > 0.97 or max(x1 - x0, y1 - y0) > 425
+
+
+def test_draw_with_pens(tmp_path, penink):
+    from PIL import Image
+
+    y, x = np.mgrid[0:24, 0:24]
+    Image.fromarray(np.dstack([9 * x, 9 * y, 255 - 9 * x]).astype(np.uint8)).save(tmp_path / "photo.png")
+    two = (("k", "#000000"), ("r", "#d2232a"))
+    pens = {**PENS, "pens": [{"name": name, "color": color, "width": "0.4mm"} for name, color in two]}
+    options = ("--inks", "#d2232a,#000000", "--pens", pens_file(tmp_path, pens), "--style", "true", "--width", "1in")
+    done = penink("draw", *options, str(tmp_path / "photo.png"), "-o", str(tmp_path / "a.svg"))
+    assert done.returncode == 0, done.stderr
+    layers = subpaths(ET.parse(tmp_path / "a.svg").getroot())
+    assert [layer[:2] for layer in layers] == [("1 k", "#000000"), ("!2 r", "#d2232a")]
+    assert {stroke[0] for layer in layers for stroke in layer[2]} == {0.4}
