@@ -59,6 +59,8 @@ EVENINGS, EVENED = 5, 0.18
 #: Their ends are prolonged by so many samples at the most, while lines there are as far apart as this part of their
 #: distance.
 PROLONGED, ROOM = 5, 0.78
+#: A second set of lines is turned so far from the first.
+CROSS_ANGLE = 55.0
 #: Wavering lines: how far, and how far apart the places are between which they waver.
 WAVER_PT, WAVER_LENGTH_PT = 2.5, 9.0
 
@@ -100,17 +102,27 @@ def engrave(
     if engraving.lines:
         spacing = sheet.width / engraving.lines
     borders = walls.build(edges, sheet, FRAME_PEN_PT)
-    tracks = _tracks(sheet, engraving, spacing, borders, seed, field)
+    sets = [_tracks(sheet, engraving, spacing, borders, seed, field)]
+    if engraving.crosses < 1:
+        c, s = (np.float32(part) for part in direction(2 * CROSS_ANGLE))
+        across = None if field is None else (field[0] * c - field[1] * s, field[1] * c + field[0] * s)
+        second = replace(engraving, angle=engraving.angle + CROSS_ANGLE, centre=None)
+        sets.append(_tracks(sheet, second, spacing, borders, seed + 1, across, rim=False))
     wanted = sheet.tone.astype(np.float64)
     # an engraver's lines go on across steps of tone, and so does what the eye sees of them
     eye = LowPass(EYE_PT / CELL_PT / 2, halve(sheet.tone), 2.0, sheet.each)
     seen = eye(np.ones_like(halve(sheet.tone)))
     rng = np.random.default_rng([seed, 21])
-    begin = rng.random(len(tracks.step))
+    begin = [rng.random(len(tracks.step)) for tracks in sets]
     best: tuple[float, Strokes] | None = None
     for turn in range(ROUNDS):
         tick()
-        strokes = _strokes(sheet, engraving, spacing, tracks, wanted, begin)
+        strokes = Strokes.joined(
+            [
+                _strokes(sheet, engraving, spacing, tracks, part, at)
+                for tracks, part, at in zip(sets, _parts(wanted, engraving.crosses), begin)
+            ]
+        )
         sheet.clear()
         sheet.swell(strokes)
         missing = sheet.tone - sheet.ink
@@ -125,12 +137,18 @@ def engrave(
     return best[1]
 
 
+def _parts(tone: Floats, crosses: float) -> list[Floats]:
+    """What each set of lines covers (rows, columns): above the tone from which on they cross, both grow."""
+    first = np.where(tone > crosses, crosses + (tone - crosses) / 2, tone)
+    return [first, np.where(tone > crosses, 1 - (1 - tone) / np.maximum(1 - first, 1e-3), 0.0)]
+
+
 # ------------------------------------------------------------------- middle lines
 
 
 def _tracks(
     sheet: Sheet, engraving: Engraving, spacing: float, borders: walls.Walls, seed: int,
-    field: tuple[Cells, Cells] | None,
+    field: tuple[Cells, Cells] | None, rim: bool = True,
 ) -> Tracks:  # fmt: skip
     dx, dy = sheet.width / sheet.columns, sheet.height / sheet.rows
     pad = max(PAD, int(4 * spacing / dx) + 1)
@@ -145,7 +163,7 @@ def _tracks(
     pen_lines.smooth(lines, np.full(len(lines.points), max(spacing, 3.0)))
     if field is not None and engraving.along:
         lines = _evened_out(lines, spacing)
-    return _cut(sheet, lines, borders, spacing, engraving.finest_pt)
+    return _cut(sheet, lines, borders, spacing, engraving.finest_pt, rim)
 
 
 def _evened_out(lines: LevelLines, spacing: float) -> LevelLines:
@@ -241,9 +259,11 @@ def _slope(values: Plane, axis: int) -> Floats:
     return np.asarray((high - low) / 2, np.float64)
 
 
-def _cut(sheet: Sheet, lines: LevelLines, borders: walls.Walls, spacing: float, finest_pt: float) -> Tracks:
+def _cut(
+    sheet: Sheet, lines: LevelLines, borders: walls.Walls, spacing: float, finest_pt: float, rim_lines: bool
+) -> Tracks:
     """Lines cut at walls, sampled anew."""
-    lines, inner = _with_rim(sheet, lines)
+    lines, inner = _with_rim(sheet, lines) if rim_lines else (lines, len(lines.ring))
     n = len(lines.ring)
     along = np.asarray(lines.points, np.float64)
     polylines = curves.Polylines(along, lines.first)

@@ -67,7 +67,8 @@ def describe(found: Texture, device_dpi: float | None) -> str:
         shape = "along the form, else at" if lines_of.along else "wavering at" if lines_of.waver else "straight at"
         how = "rings" if lines_of.centre else f"{shape} {lines_of.angle:g}°"
         apart = f"{lines_of.lines} across" if lines_of.lines else f"{lines_of.spacing_pt:g} pt apart"
-        lines.append(f"engraving lines that swell, {how}, {apart}, from {lines_of.finest_pt:g} pt on")
+        crossed = f", crossed from tone {lines_of.crosses:g} on" if lines_of.crosses < 1 else ""
+        lines.append(f"engraving lines that swell, {how}, {apart}, from {lines_of.finest_pt:g} pt on{crossed}")
     return "\n".join(lines) + "\n"
 
 
@@ -102,6 +103,12 @@ def show(name: str, as_file: bool, device_dpi: float | None, output: str | None,
     help="Of an engraving: so many lines to the picture's width, whatever its size, instead of --spacing.",
 )
 @click.option(
+    "--crosses",
+    type=Finite(0.01, 1),
+    metavar="TONE",
+    help="Of an engraving: from this tone on a second set of lines crosses the first.",
+)
+@click.option(
     "--centre",
     "--center",
     type=(Finite(-100, 100), Finite(-100, 100)),
@@ -122,6 +129,7 @@ def make(
     finest: float | None,
     lines: int | None,
     centre: tuple[float, float] | None,
+    crosses: float | None,
     name: str | None,
     output: str | None,
     **_: Any,
@@ -134,8 +142,9 @@ def make(
     from penink_cli.textures.make import make as make_texture
 
     made = make_texture(
-        kind, angle=angle, pen=pen, spacing=spacing, layers=layers, seed=seed, finest=finest, lines=lines, centre=centre
-    )
+        kind, angle=angle, pen=pen, spacing=spacing, layers=layers, seed=seed, finest=finest, lines=lines,
+        centre=centre, crosses=crosses,
+    )  # fmt: skip
     if name:
         made = replace(made, name=name)
     from penink_cli.formats import texture as texture_format

@@ -46,6 +46,7 @@ _ENGRAVING = {
     "finest": ("finest_pt", 0.001, LIMIT),
     "angle": ("angle", -360.0, 360.0),
     "waver": ("waver", 0.0, 10.0),
+    "crosses": ("crosses", 0.01, 1.0),
 }
 MOST_LINES = 100_000
 MOST_SCALE = 1000.0
@@ -247,6 +248,8 @@ def _engraving(value: Any) -> Engraving | None:
 def _engraving_text(engraving: Engraving) -> str:
     """The member of the file."""
     members = [(name, plain(getattr(engraving, field), 4)) for name, (field, _, _) in _ENGRAVING.items()]
+    if engraving.crosses == 1:
+        members.pop()
     members += [(name, json.dumps(getattr(engraving, name))) for name in ("along", "blunt")]
     if engraving.centre is not None:
         members.append(("centre", "[{}, {}]".format(*(plain(v, 4) for v in engraving.centre))))

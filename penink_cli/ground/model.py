@@ -372,6 +372,7 @@ class Engraving:
     centre: x and y in parts of the sheet's width and height of the point about which they are rings, None for none.
     waver: how much straight lines waver, 0 not at all, 1 as the grain of wood. blunt: ends do not taper.
     lines: keep so many lines across the sheet's width, whatever its size, instead of the spacing; None for no number.
+    crosses: the tone from which on a second set of lines crosses the first, 1 for never.
     """
 
     spacing_pt: float = 1.46
@@ -382,6 +383,7 @@ class Engraving:
     waver: float = 0.0
     blunt: bool = False
     lines: int | None = None
+    crosses: float = 1.0
 
 
 @dataclass(frozen=True, eq=False)

@@ -139,3 +139,15 @@ def test_any_sheet(name, size):
     for level in (0.0, 0.05, 0.5, 1.0):
         strokes = blast(flat(level, (3, 5)), *size, None, find_texture(name))
         assert np.isfinite(strokes.points).all() and (strokes.widths > 0).all()
+
+
+def test_where_it_crosses_a_second_set_of_lines_does_and_the_tone_is_kept():
+    def angles(strokes):
+        ends = strokes.points[strokes.first[1:] - 1] - strokes.points[strokes.first[:-1]]
+        ends = ends[np.hypot(*ends.T) > 20]
+        return set(np.round(np.degrees(np.arctan2(ends[:, 1], ends[:, 0])) % 180))
+
+    light, dark = (blast(flat(tone), 140, 140, None, engraved(crosses=0.5)) for tone in (0.4, 0.75))
+    assert 25.0 not in angles(light)
+    assert {150.0, 25.0} <= angles(dark)
+    assert abs(measures.tone_error(dark, flat(0.75))[20:-20, 20:-20].mean()) < 0.3
