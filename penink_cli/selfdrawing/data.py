@@ -86,6 +86,11 @@ class LayerData:
     engraving: Engraving | None
     told: LineData
 
+    @property
+    def black(self) -> float:
+        """The tone beyond which it is solid: where a last layer begins that goes up to 1; 1 for none."""
+        return self.form[-1][1] if len(self.form) > 1 and self.form[-1][2] >= 1 else 1.0
+
 
 def layers(illustration: Illustration) -> list[LayerData]:
     """All layers, the first at the bottom. Raises LimitError where one is too large for a device."""

@@ -78,6 +78,7 @@ def _description(layer: LayerData) -> dict[str, Any]:
         "family": layer.family,
         "field": [layer.field.width, layer.field.height] if layer.field else [0, 0],
         "form": layer.form,
+        "black": layer.black,
         "engraving": _engraving(layer.engraving),
         "told": [told.dark, told.white],
         "lineGrid": [told.across, told.down],

@@ -85,7 +85,7 @@ def _closed(layer: LayerData) -> str:
     return (
         f"/OutlinePen {plain(layer.outline_pt, 4)} def /Gamma {plain(layer.gamma, 4)} def /Family {layer.family} def\n"
         f"/LinePen {plain(layer.told.choice.pen_pt, 4)} def /LineEven {_bool(layer.told.choice.even)} def\n"
-        f"/engraving {_engraving(layer.engraving)} def\n"
+        f"/engraving {_engraving(layer.engraving)} def /black {plain(255 * layer.black, 4)} def\n"
         f"{plain(table.pen_pt, 4)} {plain(table.magnification, 4)} [ {screens} ] Layer\nend\n"
     )
 

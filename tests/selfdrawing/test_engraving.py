@@ -58,6 +58,18 @@ def test_flat_tones_are_true_on_a_printer(tone, tmp_path):
         assert seen(by_printer(picture, tmp_path)).mean() == pytest.approx(wanted, abs=0.015), texture
 
 
+def test_what_is_black_is_solid(tmp_path):
+    def within(tone: np.ndarray) -> float:
+        return float((tone[100:-100, 100:-100] > 0.5).mean())
+
+    black = flat(0.97, "form")
+    assert within(by_printer(black, tmp_path)) > 0.999 and within(by_page(black, tmp_path)) > 0.999
+    dark = flat(0.85, "form")  # and what is not is not
+    assert 0.8 < within(by_printer(dark, tmp_path)) < 0.9 and 0.8 < within(by_page(dark, tmp_path)) < 0.9
+    crossed = by_printer(flat(0.97, "crosshatch"), tmp_path)  # a texture without black
+    assert within(crossed) < 0.995
+
+
 def strokes(text: str) -> list[np.ndarray]:
     return [np.array(d.replace("z", "").replace("h.001", "").split(), float).reshape(-1, 2) * 72 / 25.4
             for d in re.findall(r' d="M([^"]*)"', text)]  # fmt: skip

@@ -112,6 +112,19 @@ class Sheet {
     return out;
   }
 
+  // What is darker than black is filled, a row of cells at a time, but for the cells at its border, which strokes draw.
+  solid(fill) {
+    const {tone, wide, tall, x0, y0, perX, perY, unit, layer} = this, black = 255 * layer.black;
+    for (let q = 1; q < tall - 1; q++) for (let p = 1, k = q * wide + 1, first = -1; p < wide; p++, k++) {
+      if (p < wide - 1 && tone[k] > black && tone[k - wide] >= black && tone[k + wide] >= black) { if (first < 0) first = p; continue; }
+      if (first >= 0 && p - first > 2) {
+        const left = (x0 + first + 1) / perX * unit, right = (x0 + p - 1) / perX * unit, top = (y0 + q) / perY * unit, bottom = (y0 + q + 1.06) / perY * unit;  // no seams
+        fill(layer, [left, right, right, left], [top, top, bottom, bottom]);
+      }
+      first = -1;
+    }
+  }
+
   // The greatest tone in and around patches.
   patches() {
     const {tone, wide, tall} = this, patchX = this.patchX = Math.floor(wide / this.perX / PATCH), patchY = this.patchY = Math.floor(tall / this.perY / PATCH);
@@ -320,6 +333,7 @@ function draw(layers, width, height, window, gain, every, stroke, outline, fill)
       continue;
     }
     if (sheet.layer.field) { follow(sheet, every, stroke); continue; }
+    if (sheet.layer.black < 1) sheet.solid(fill);
     let most = sheet.patches();
     for (const screen of sheet.layer.screens) sheet.hatch(screen, most);
     sheet.correct();

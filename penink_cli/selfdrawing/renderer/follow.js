@@ -163,8 +163,8 @@ function wallBetween({layer: {picture}, width, height}, walls, x, y, u, v) {
 
 // How much each screen covers in each cell of the sheet: the first closes up where it is black, and the others end there.
 function coversOf(sheet) {
-  const {tone, wide, layer: {form}} = sheet, last = form[form.length - 1], black = form.length > 1 && last[2] >= 1 ? last[1] : 2;
-  const hatched = black < 2 ? form.slice(0, -1) : form, table = hatched.map(() => new Float32Array(256));
+  const {tone, wide, layer: {form, black}} = sheet;
+  const hatched = black < 1 ? form.slice(0, -1) : form, table = hatched.map(() => new Float32Array(256));
   for (let t = 0; t < 256; t++) sharesOf(Math.min(t / 255, 0.995), hatched).forEach((cover, i) => { table[i][t] = cover; });
   // a layer is not begun for a spot
   const around = boxMean(tone, wide, 6), out = hatched.map(() => new Float32Array(tone.length));
@@ -177,7 +177,7 @@ function coversOf(sheet) {
       for (let i = 0; i < onset; i++) out[i][k] = few[i];
     } else for (let i = 0; i < hatched.length; i++) out[i][k] = table[i][t];
   }
-  if (black < 2) {
+  if (black < 1) {
     const part = boxMean(tone.map((t, k) => t > 255 * black && (around[k] > 255 * black || t > 255 * (black + 0.03)) ? 1 : 0), wide, 3);
     for (let k = 0; k < tone.length; k++) if (part[k] > 0) {
       out[0][k] += (CLOSE - out[0][k]) * part[k];
