@@ -86,7 +86,7 @@ def discs() -> None:
     n = 72 * 8
     y, x = np.mgrid[:n, :n] + 0.5
     r = np.hypot(x - n / 2, y - n / 2) / FINE
-    for texture in ("crosshatch", "parallel", "form", "stipple"):
+    for texture in ("crosshatch", "parallel", "form", "engraving", "stipple"):
         for dpi in (600.0, None):
             for white in (False, True):
                 row = []

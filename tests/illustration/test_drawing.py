@@ -131,13 +131,18 @@ CHAINS = {
     "d.png": ("--strength", "0.7", "--mix", "0.2,0.7,0.1", "--vignette", "20", "--no-outlines", "--threads", "3"),
     "d.penink": ("--target", "spot", "--texture", "stipple"),
     "d.html": ("--height", "1in", "--outlines"),
+    "d.ps": ("--style", "fur", "--mask", "{mask}", "--directions", "{strokes}", "--no-lines", "--paper", "letter"),
 }
 
 
 @pytest.mark.parametrize("output", CHAINS)
 def test_every_option_of_draw_is_in_the_chain_it_prints(penink, photo, output, tmp_path):
     width = () if "--height" in CHAINS[output] else ("--width", "2in")
-    done = penink("draw", photo, *width, "--verbose", *CHAINS[output], "-o", output, cwd=tmp_path)
+    own = {"mask": photo.parent / "mask.pgm", "strokes": photo.parent / "strokes.svg"}
+    own["mask"].write_bytes(b"P5 160 120 255\n" + bytes([255] * 80 + [0] * 80) * 120)
+    own["strokes"].write_text(THIN)
+    given = [option.format(**own) for option in CHAINS[output]]
+    done = penink("draw", photo, *width, "--verbose", *given, "-o", output, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     direct = (tmp_path / output).read_bytes()
     (tmp_path / output).unlink()
@@ -192,6 +197,36 @@ def test_an_archive_keeps_the_lines_and_the_field_of_its_style(penink, photo, tm
     rendered = strokes(ran(penink("render", tmp_path / "d.penink")))[1:]
     ink = [sum(len(s["points"]) * s["width"] for s in found) for found in (direct, rendered)]
     assert ink[1] == pytest.approx(ink[0], rel=0.1)
+
+
+def test_an_archive_swells_as_its_style_does_and_one_pen_does_not(penink, photo, tmp_path):
+    for options, swells in (((), True), (("--pen", "0.4"), False)):
+        ran(penink("draw", photo, "--width", "2in", *options, "-o", tmp_path / "d.penink"))
+        with zipfile.ZipFile(tmp_path / "d.penink") as archive:
+            (layer,) = json.loads(archive.read("illustration.json"))["layers"]
+        assert layer.get("swell", 0) == swells
+        ran(penink("draw", photo, "--width", "2in", "--no-lines", *options, "-o", tmp_path / "d.jsonl"))
+        assert any("widths" in s for s in strokes((tmp_path / "d.jsonl").read_bytes())[1:]) == swells
+
+
+def test_what_was_read_or_is_lost_is_said_in_one_line(penink, tmp_path):
+    white = np.full((40, 60), 255, np.uint8)
+    Image.fromarray(white).save(tmp_path / "white.png")
+    lost = np.dstack([white, np.where(np.arange(60) < 30, 255, 0)[None].repeat(40, 0).astype(np.uint8)])
+    Image.fromarray(lost, "LA").save(tmp_path / "lost.png")
+    pages = [Image.fromarray(np.full((40, 60), v, np.uint8)) for v in (90, 200)]
+    pages[0].save(tmp_path / "pages.tiff", save_all=True, append_images=pages[1:])
+    dull = np.random.default_rng(0).integers(100, 140, (40, 60), np.uint8)
+    Image.fromarray(dull).save(tmp_path / "dull.png")
+    for name, said in (
+        ("white.png", b"a drawing without a stroke"),
+        ("lost.png", b"is lost on white"),
+        ("pages.tiff", b"the first of 2 pages is read"),
+        ("dull.png", b"of the range of grey"),
+    ):
+        done = penink("draw", name, "--width", "1in", "-o", "d.svg", cwd=tmp_path)
+        assert done.returncode == 0 and done.stderr.count(said) == 1, done.stderr
+        assert all(line.startswith(b"penink draw: warning: ") for line in done.stderr.splitlines()), done.stderr
 
 
 def test_a_picture_for_a_screen_has_the_photo_s_tone_as_it_is(penink, photo, tmp_path):
