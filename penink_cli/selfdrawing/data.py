@@ -65,7 +65,7 @@ class LayerData:
     family: the number of the first layer with the same texture and pen, whose strokes lie in the same places.
     form: of each of the texture's layers of hatching the degrees from a field, and the tones where it begins and ends.
     field: the directions, None where there are none that the strokes follow. engraving: lines that swell, instead of
-    the table's screens. told: the telling lines.
+    the table's screens. told: the telling lines. color: of the ink, #rrggbb; layers of another know nothing of it.
     """
 
     width: int
@@ -85,6 +85,7 @@ class LayerData:
     field: FieldData | None
     engraving: Engraving | None
     told: LineData
+    color: str
 
     @property
     def black(self) -> float:
@@ -137,6 +138,7 @@ def _layer(layer: Layer, w: int, h: int, number: int, family: int) -> LayerData:
         len(chains), outlined, len(np.unique(ends)), len(ends),
         layer.outline.pen_pt if layer.outline else 0.0, layer.gamma, screens.table(layer.texture, layer.pen_pt),
         family, _form(layer), _field(layer), layer.texture.engraving if layer.pen_pt is None else None, _told(layer),
+        layer.color or "#000000",
     )  # fmt: skip
 
 

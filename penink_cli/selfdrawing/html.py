@@ -79,6 +79,7 @@ def _description(layer: LayerData) -> dict[str, Any]:
         "field": [layer.field.width, layer.field.height] if layer.field else [0, 0],
         "form": layer.form,
         "black": layer.black,
+        "ink": layer.color,
         "engraving": _engraving(layer.engraving),
         "told": [told.dark, told.white],
         "lineGrid": [told.across, told.down],

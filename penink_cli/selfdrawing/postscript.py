@@ -39,7 +39,7 @@ def write(illustration: Illustration, packing: str = "flate") -> bytes:
     tail = "end restore\nshowpage\n%%Trailer\n%%EOF\n"
     program = "\n".join(packer.source(name) for name in SOURCES)
     page = f"{plain(width, 4)} {plain(height, 4)} Page\n"
-    picture = f"[ {' '.join(f'Layer{i}' for i in range(len(parts)))} ] Picture\n"
+    picture = "".join(_picture(parts, ink) for ink in dict.fromkeys(part.color for part in parts))
     if packing == "readable":
         body = program + page
         for i, layer in enumerate(parts):
@@ -58,6 +58,13 @@ def write(illustration: Illustration, packing: str = "flate") -> bytes:
     name = "FlateDecode" if packing == "flate" else "LZWDecode"
     body = f"{{ currentfile /ASCII85Decode filter dup /{name} filter cvx exec flushfile }} exec\n"
     return (head + body).encode("ascii") + packer.ascii85(data) + tail.encode("ascii")
+
+
+def _picture(parts: list[LayerData], ink: str) -> str:
+    """The layers of one ink, drawn together."""
+    red, green, blue = (plain(int(ink[k : k + 2], 16) / 255, 4) for k in (1, 3, 5))
+    names = " ".join(f"Layer{i}" for i, part in enumerate(parts) if part.color == ink)
+    return f"{red} {green} {blue} setrgbcolor [ {names} ] Picture\n"
 
 
 def _bytes(layer: LayerData) -> bytes:

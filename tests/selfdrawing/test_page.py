@@ -6,6 +6,7 @@ import base64
 import io
 import re
 import subprocess
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
@@ -231,6 +232,20 @@ def test_layers_and_frame_of_what_is_saved(tmp_path):
         half = float(path.attrib.get("stroke-width", max(pens, key=float))) / 2
         at = np.array(path.attrib["d"][1:].replace("h.001", "").split(), float)
         assert at.min() >= half - 0.02 and at.max() <= 38.1 - half + 0.02
+
+
+def test_layers_have_their_inks_and_know_nothing_of_others(tmp_path):
+    below, above = two_layers(CROSSHATCH, CROSSHATCH).layers
+    picture = Illustration(108, 108, (replace(below, color="#ff0000"), replace(above, color="#0000ff")))
+    root = ElementTree.fromstring(svg_of(picture, tmp_path, 108))
+    assert [group.attrib["stroke"] for group in root] == ["#ff0000", "#0000ff"]
+    alone = ElementTree.fromstring(svg_of(Illustration(108, 108, (below,)), tmp_path, 108))
+    assert [path.attrib["d"] for path in root[0]] == [path.attrib["d"] for path in alone[0]]
+    ppm = tmp_path / "a.ppm"
+    device = ("-sDEVICE=ppmraw", "-r150", "-dEPSCrop", f"-sOutputFile={ppm}")
+    assert ghostscript(postscript.write(picture), *device) == b""
+    colours = {tuple(c) for c in np.asarray(Image.open(ppm)).reshape(-1, 3).tolist()}
+    assert {(255, 0, 0), (0, 0, 255), (255, 255, 255)} == colours
 
 
 def svg_of(picture: Illustration, tmp_path: Path, width: float) -> str:

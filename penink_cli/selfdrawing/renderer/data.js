@@ -91,7 +91,7 @@ function readLayers(description, bytes) {
     const curve = d.gamma === 1 ? null :
       Uint8Array.from({length: 256}, (_, t) => Math.floor(255 * (1 - (1 - t / 255) ** d.gamma) + 0.5));
     const field = reader.field(...d.field, {picture, xs, ys, ends}), told = reader.told(...d.told);
-    return {picture, screens, outlines, curve, field, told, form: d.form, black: d.black, engraving: d.engraving, lineGrid: d.lineGrid, linePen: d.linePen, lineEven: d.lineEven,
+    return {picture, screens, outlines, curve, field, told, form: d.form, black: d.black, ink: d.ink, engraving: d.engraving, lineGrid: d.lineGrid, linePen: d.linePen, lineEven: d.lineEven,
       family: d.family, pen: d.pen, magnification: d.magnification, outlinePen: d.outlinePen / d.magnification};
   });
 }

@@ -48,21 +48,27 @@ function repaint(every = 1) {
   const began = performance.now(), ratio = window.devicePixelRatio || 1, wide = Math.round(canvas.clientWidth * ratio), tall = Math.round(canvas.clientHeight * ratio);
   settle();
   const per = UNIT * ratio, x = view.x * ratio, y = view.y * ratio, right = x + size[0] * scale() * ratio, bottom = y + size[1] * scale() * ratio;
-  const raster = new Raster(wide, tall, ...[x, y, right, bottom].map(Math.round));
   let strokes = 0;
-  draw(layers, size[0] * scale() / UNIT, size[1] * scale() / UNIT, [-x / per, -y / per, (wide - x) / per, (tall - y) / per], 0, every, (layer, screen, count, pressure) => {
-    raster.stroke(alongX, alongY, count, per * layer.magnification, x, y, pressure * layer.pen * layer.magnification * per / 2, false);
-    strokes++;
-  }, (layer, xs, ys, pen) => raster.stroke(xs, ys, xs.length, per * layer.magnification, x, y, pen * layer.magnification * per / 2, true),
-  (layer, xs, ys) => { raster.fill(xs, ys, per, x, y); strokes++; });
+  const sheets = inks().map(ink => {
+    const raster = new Raster(wide, tall, ...[x, y, right, bottom].map(Math.round));
+    draw(layers.filter(layer => layer.ink === ink), size[0] * scale() / UNIT, size[1] * scale() / UNIT, [-x / per, -y / per, (wide - x) / per, (tall - y) / per], 0, every, (layer, screen, count, pressure) => {
+      raster.stroke(alongX, alongY, count, per * layer.magnification, x, y, pressure * layer.pen * layer.magnification * per / 2, false);
+      strokes++;
+    }, (layer, xs, ys, pen) => raster.stroke(xs, ys, xs.length, per * layer.magnification, x, y, pen * layer.magnification * per / 2, true),
+    (layer, xs, ys) => { raster.fill(xs, ys, per, x, y); strokes++; });
+    return {raster, ink};
+  });
   if (!image || image.width !== wide || image.height !== tall) image = new ImageData(canvas.width = wide, canvas.height = tall);
-  raster.show(image);
+  show(image, sheets);
   canvas.style.transform = "";
   canvas.getContext("2d").putImageData(image, 0, 0);
   shown = {x: view.x, y: view.y, scale: scale()};
   painted = {ms: performance.now() - began, strokes, count: painted.count + 1, every};
   status.value = `${view.zoom.toFixed(view.zoom < 10 ? 1 : 0)}×`;
 }
+
+// The inks, the first at the bottom. They are transparent, and layers of one know nothing of those of another.
+const inks = () => [...new Set(layers.map(layer => layer.ink))];
 
 // A window (points) of the picture, drawn at so many points wide, as an SVG document for a device whose pixels are `gain` points.
 // Written as penink_cli/outputs/svg.py does: in millimetres, a group a layer, a path a stroke, shapes for strokes that swell; all
@@ -80,7 +86,7 @@ function svg(width, window, gain) {
       pens.set(wide, (pens.get(wide) || 0) + 1);
     }
   };
-  draw(layers, width, height, window, gain, 1,
+  for (const ink of inks()) draw(layers.filter(layer => layer.ink === ink), width, height, window, gain, 1,
     (layer, screen, count, pressure) => add(layer, pressure * layer.pen * layer.magnification - gain * screen.widens, alongX, alongY, count),
     (layer, xs, ys, pen) => add(layer, pen * layer.magnification - MEAN * gain, xs, ys, xs.length),
     (layer, xs, ys) => {
@@ -90,7 +96,7 @@ function svg(width, window, gain) {
   const wide = mm(x1 - x0), tall = mm(y1 - y0);
   return `<svg xmlns="http://www.w3.org/2000/svg" xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape" version="1.1" width="${wide}mm" height="${tall}mm" viewBox="0 0 ${wide} ${tall}">\n` +
     groups.map(({strokes, shapes, pens}, i) => {
-      const ink = layers[i].ink || "#000000", usual = [...pens].reduce((a, b) => b[1] > a[1] ? b : a, [0.3, 0])[0];
+      const ink = layers[i].ink, usual = [...pens].reduce((a, b) => b[1] > a[1] ? b : a, [0.3, 0])[0];
       return `<g id="layer${i + 1}" inkscape:groupmode="layer" inkscape:label="${i + 1}" fill="none" stroke="${ink}" stroke-width="${usual}" stroke-linecap="round" stroke-linejoin="round">\n` +
         strokes.map(([pen, d]) => `<path d="M${d}"${pen === usual ? "" : ` stroke-width="${pen}"`}/>\n`).join("") +
         (shapes.length ? `<g fill="${ink}" stroke="none">\n${shapes.map(d => `<path d="M${d}z"/>\n`).join("")}</g>\n` : "") + "</g>\n";

@@ -70,16 +70,28 @@ class Raster {
     }
   }
 
-  // Onto the pixels of an image.
-  show(image) {
+  // The light that is left of each pixel, all shapes counted.
+  done() {
     if (this.sums) for (let j = this.top; j < this.bottom; j++)
       for (let i = 0, sum = 0, from = j * (this.wide + 2); i < this.right; i++) {
         sum += this.sums[from + i];
         this.light[j * this.wide + i] *= 1 - clamp(sum, 0, 1);
       }
-    const out = new Int32Array(image.data.buffer), {light, wide, left, right} = this;
-    out.fill(0);
-    for (let j = this.top; j < this.bottom; j++)
-      for (let k = j * wide + left, end = j * wide + right; k < end; k++) out[k] = (light[k] + 0.5 | 0) * 0x10101 | 0xff000000;
+    return this.light;
+  }
+}
+
+// Onto the pixels of an image: rasters of the same frame, each with its ink.
+function show(image, sheets) {
+  const out = new Int32Array(image.data.buffer), {wide, left, right, top, bottom} = sheets[0].raster;
+  const lights = sheets.map(({raster}) => raster.done()), parts = sheets.map(({ink}) => [1, 3, 5].map(k => 1 - parseInt(ink.slice(k, k + 2), 16) / 255));
+  out.fill(0);
+  for (let j = top; j < bottom; j++) for (let k = j * wide + left, end = j * wide + right; k < end; k++) {
+    let red = 255, green = 255, blue = 255;
+    for (let s = 0; s < lights.length; s++) {
+      const dark = 1 - lights[s][k] / 255, [r, g, b] = parts[s];
+      red *= 1 - dark * r; green *= 1 - dark * g; blue *= 1 - dark * b;
+    }
+    out[k] = (red + 0.5 | 0) | (green + 0.5 | 0) << 8 | (blue + 0.5 | 0) << 16 | 0xff000000;
   }
 }
