@@ -44,6 +44,7 @@ USUAL_WIDTH = 432.0
 OUTLINE_STRENGTH = 0.2  # the grey step that is worth an outline
 OUTLINE_LENGTH = 0.04  # of the photo's longer side: shorter chains are texture, and the hatching's to show
 COMPOSED_DPI = 288.0  # as `compose` has it
+PLATES_TEXTURE = "crosshatch"  # true up to the darkest tones, which inks over one another need
 PRINTER_DPI = 600.0
 POSTER_DPI = 1152.0  # pixels an inch that an illustration is made from: those of a drawing four times as wide
 ARCHIVE = ".penink"
@@ -165,7 +166,8 @@ def draw(
     done. With --watch the drawing follows its photo, and the style, texture, mask or strokes given as files, until it
     is interrupted; only what has changed is made anew, and a page reloads itself in the browser.
 
-    With --inks it is drawn in colours, a plate an ink, whose tones are the photo's; lines are the darkest ink's.
+    With --inks it is drawn in colours, a plate an ink, whose tones are the photo's; lines are the
+    darkest ink's, and the texture is crosshatch unless another is named.
 
     \b
     penink draw photo.jpg -o photo.pdf
@@ -194,6 +196,8 @@ def draw(
     if inks is not None and (ending == STROKES or "colours" in given):
         why = f"{ending} has one colour" if ending == STROKES else "--color says what --inks says"
         raise click.UsageError(f"--inks: {why}")
+    if inks is not None and "texture_name" not in given:
+        given["texture_name"] = PLATES_TEXTURE
     if "pens_file" in given and "pen" not in given:
         given |= _one_width(given["pens_file"])
     style = find_style(style_name)

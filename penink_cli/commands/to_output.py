@@ -58,6 +58,8 @@ def _decorator(option: Option) -> Any:
     if option.default is False:
         return click.option(word, option.name, is_flag=True, help=option.help)
     kind: click.ParamType = Finite(option.least, option.most)
+    if option.default == "":
+        return click.option(word, option.name, default="", metavar="TEXT", help=option.help)
     if option.choices:
         kind = click.Choice(option.choices)
     elif option.length:

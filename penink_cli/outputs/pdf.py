@@ -12,6 +12,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from penink_cli.ground.decimals import plain
+from penink_cli.outputs.registry import Option
 
 if TYPE_CHECKING:  # the help text needs none of it
     import numpy as np
@@ -28,17 +29,24 @@ bottom, which viewers can switch on and off; coloured ones are transparent inks 
 penink to-pdf photo.strokes.jsonl -o photo.pdf
 penink to-pdf --paper letter --margin 0.5in photo.strokes.jsonl -o photo.pdf
 """
+OPTIONS = (
+    Option("title", "Title of the document, for viewers and print shops.", ""),
+    Option("author", "Author of the document.", ""),
+    Option("trim", "Say that the sheet is cut to the picture: a trim box.", False),
+)
 DECIMALS = 3  # of a point
 MOST = 14400  # a side of a page in user-space units, beyond which viewers differ
 
 
 def write(
-    out: Sink, layers: Sequence[Strokes], page: Page, colours: Sequence[tuple[float, float, float]] = ()
-) -> None:
+    out: Sink, layers: Sequence[Strokes], page: Page, colours: Sequence[tuple[float, float, float]] = (),
+    title: str = "", author: str = "", trim: bool = False,
+) -> None:  # fmt: skip
     """Write a PDF 1.5 file; the first layer is at the bottom. Colours: red, green, blue (0 … 1) of each layer.
 
     Where there are several, a layer is a group that is multiplied with what lies below: its ink is transparent, but its
-    own strokes do not darken where they cross.
+    own strokes do not darken where they cross. title, author: nothing is said of them where they are empty. trim: with
+    a trim box around the sheet.
     """
     import pydyf
 
@@ -91,6 +99,13 @@ def write(
     }
     if over:
         leaf["Group"] = pydyf.Dictionary({"S": "/Transparency", "CS": "/DeviceRGB"})
+    if trim:
+        sheet = (max(s.width for s in layers), max(s.height for s in layers))
+        corners = (page.x, page.height - page.y - sheet[1], page.x + sheet[0], page.height - page.y)
+        leaf["TrimBox"] = pydyf.Array([round(max(v, 0.0) / unit, DECIMALS) for v in corners])
+    for name, text in (("Title", title), ("Author", author)):
+        if text:
+            document.info[name] = pydyf.String(text)
     if unit > 1:
         leaf["UserUnit"] = round(unit, 9)
     document.add_page(pydyf.Dictionary(leaf))

@@ -38,7 +38,8 @@ class Medium:
 class Option:
     """An option of one output, which its `write` takes by the same name.
 
-    default: False for a flag, a number, or one of the choices. least, most: of a number. length: a number of points,
+    default: False for a flag, a number, one of the choices, or an empty text for any text.
+    least, most: of a number. length: a number of points,
     which may be given in other units.
     """
 

@@ -62,7 +62,7 @@ def halftone(amounts: np.ndarray, inks: tuple, width_in: float) -> np.ndarray:
     for amount, ink, angle in zip(amounts, inks, ANGLES, strict=False):
         c, s = np.cos(np.radians(angle)), np.sin(np.radians(angle))
         k = 2 * np.pi * LINES / HALFTONE_DPI
-        spot = np.cos(k * (c * x + s * y)) + np.cos(k * (c * y - s * x))
+        spot = np.cos(k * (c * x + s * y + 0.37)) + np.cos(k * (c * y - s * x + 0.19))
         dot = spot > np.interp(at_size(amount, w, h), level, table)
         light *= np.where(dot[..., None], np.maximum(linear(ink), 0.004), 1.0)
     return light

@@ -90,6 +90,19 @@ def test_pdf_page_layers_and_nothing_that_varies(tmp_path):
     assert y.mean() == pytest.approx(306, abs=1)
 
 
+def test_pdf_says_title_author_and_trim_where_they_are_asked_for(tmp_path):
+    layers = [strokes_of([[[0, 0]]], 8)]
+    out = io.BytesIO()
+    pdf.write(out, layers, lay_out(layers, "a6", 0.0), title="Schatten (ü)", author="A. Penman", trim=True)
+    text = out.getvalue()
+    assert re.search(rb"/TrimBox \[76.819 137.\d+ 220.819 281.\d+\]", text)
+    assert b"A. Penman" in text and b"/Title" in text
+    (tmp_path / "a.pdf").write_bytes(text)
+    assert ghostscript(tmp_path / "a.pdf", 72).min() < 255
+    plain = written(pdf, layers, paper="a6")
+    assert not re.search(rb"/(Title|Author|TrimBox)", plain)
+
+
 def test_pdf_pages_larger_than_viewers_take_have_a_larger_unit(tmp_path):
     sheet = strokes_of([[[0, 0], [9000, 0], [18000, 9000], [28800, 14400]]], 300, 28800, 14400)
     text = written(pdf, [sheet])
