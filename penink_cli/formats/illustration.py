@@ -42,6 +42,7 @@ MAX_BYTES = 1 << 20  # of the manifest
 MAX_LAYERS = 64
 MAX_SIZE = 144_000.0  # points
 MAX_PEN = 72.0
+COMPACT = b"PI"  # how all compact members begin
 LEVELS = 24  # of grey, unless a layer says another number: what ink shows of more is nothing
 
 _SHIPPED = re.compile(r"[a-z0-9_-]{1,60}", re.ASCII)

@@ -322,6 +322,7 @@ def read_illustration(path: str | None, max_pixels: int) -> Illustration:
     from penink_cli.options.textures import find_texture
 
     source = streams.source_name(path)
+    as_kept = False
     with streams.reading(path) as stream:
         text = stream.read(archive.MAX_BYTES + 1)
     if text.startswith(archive.MAGIC) or source.endswith(".penink"):
@@ -335,6 +336,7 @@ def read_illustration(path: str | None, max_pixels: int) -> Illustration:
             return members[name]
 
         text = fetch_manifest(members, source)
+        as_kept = all(data.startswith(illustration.COMPACT) for data in members.values() if data is not text)
     else:
         folder = os.path.dirname(path) if path is not None and path != "-" else ""
 
@@ -352,6 +354,8 @@ def read_illustration(path: str | None, max_pixels: int) -> Illustration:
                 validity.check(layer.edges)
         except PeninkError as error:
             raise type(error)(f"layer {i}: edges: {error.message}", source) from None
+    if as_kept and all(layer.levels == layer.samples.maxval + 1 for layer in found.layers):
+        return found  # what came in compact forms is at their precision
     return settled(found)
 
 
