@@ -23,11 +23,20 @@ AROUND_PT, DARK, FULL = 3.0, 0.35, 0.65
 TOLD_PT = 1.6
 
 
-def with_room(lines: Lines, width_pt: float, height_pt: float) -> Ints:
-    """Indices of the lines, dark and light, that a drawing of that size, and so a smaller one, has room for."""
+def with_room(lines: Lines, width_pt: float, height_pt: float, tone: Cells, threads: int) -> Ints:
+    """Indices of the lines, dark and light, that a drawing of that size, and so a smaller one, has room for.
+
+    tone: (h, w) of the photo. A light line whose ground is nowhere darker than DARK does not show.
+    """
     dark = chosen(lines, width_pt, height_pt, LineChoice())
     light = chosen(lines, width_pt, height_pt, WHITE, white=True)
-    return np.sort(np.concatenate([dark, light]))
+    h, w = tone.shape
+    around = blurred(tone, AROUND_PT * w / width_pt, threads)
+    at = np.floor(lines.points * (w / lines.width, h / lines.height)).astype(np.int64)
+    at = np.clip(at, 0, (w - 1, h - 1))
+    there = around[at[:, 1], at[:, 0]]
+    shown = [i for i in light.tolist() if there[lines.first[i] : lines.first[i + 1]].max() > DARK]
+    return np.sort(np.concatenate([dark, np.array(shown, np.int64)]))
 
 
 def told(
