@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from penink_cli.blasting.sheet import CELL_PT, coverage, resample
-from penink_cli.composition.filters import blurred
+from penink_cli.composition.filters import Picture, blurred
 from penink_cli.ground.model import Floats, Ints, LineChoice, Lines, Strokes
 from penink_cli.lines.choice import chosen
 from penink_cli.lines.strokes import line_strokes
@@ -23,7 +23,7 @@ AROUND_PT, DARK, FULL = 3.0, 0.35, 0.65
 TOLD_PT = 1.6
 
 
-def with_room(lines: Lines, width_pt: float, height_pt: float, tone: Cells, threads: int) -> Ints:
+def with_room(lines: Lines, width_pt: float, height_pt: float, tone: Picture, threads: int) -> Ints:
     """Indices of the lines, dark and light, that a drawing of that size, and so a smaller one, has room for.
 
     tone: (h, w) of the photo. A light line whose ground is nowhere darker than DARK does not show.
