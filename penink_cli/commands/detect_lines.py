@@ -83,7 +83,8 @@ def detect_lines(
     if seen_at is not None:
         from penink_cli.blasting import telling
 
-        found = found.chosen(telling.with_room(found, seen_at, seen_at * rows / columns, 1 - grey, threads or processors()))
+        room = telling.with_room(found, seen_at, seen_at * rows / columns, 1 - grey, threads or processors())
+        found = found.chosen(room)
     spots = int((found.breadth > 0).sum())
     reporter(verbose)(f"{len(found)} lines, {int(found.white.sum())} of them light, {spots} spots")
     with writing(output, binary=False) as out:
