@@ -30,7 +30,7 @@ FAINT, SPARSEST = 0.08, 0.05
 AROUND_PT = 9.0
 #: A layer is active where it covers more than this: only there does it fill gaps.
 ACTIVE = 0.04
-#: LevelLines begin and end where the layer covers so much, a different tone for each: else their ends draw a contour.
+#: Lines begin and end where the layer covers so much, a different tone for each: else their ends draw a contour.
 RAGGED = (0.004, 0.03)
 #: Short strokes: how long they are, how far apart the places tried, and the cosine of the most that they turn in a
 #: quarter of their length.

@@ -18,7 +18,7 @@ from penink_cli.ground.model import Floats, Ints
 
 #: Distance of a line's points, points on paper.
 STEP_PT = 1.0
-#: LevelLines are smoothed over so much of their distance: rounds of a binomial mean of σ² ½ each, two at the least.
+#: Lines are smoothed over so much of their distance: rounds of a binomial mean of σ² ½ each, two at the least.
 SMOOTHING, FEWEST_ROUNDS, MOST_ROUNDS = 0.5, 2, 40
 #: A stroke follows its line within this.
 TOLERANCE_PT = 0.2

@@ -1,6 +1,6 @@
 """Edges and samples measured: ``python -m tests.benchmarks.edges`` (about ten minutes; ``--quick`` half a minute).
 
-Or only some parts: ``python -m tests.benchmarks.edges positions trips heldout hostile storage large``.
+Or only some parts: ``python -m tests.benchmarks.edges positions strengths trips heldout hostile storage large``.
 
 Positions of edges on rendered scenes; round trips photo → edges and samples reduced 4 × → photo; the
 grids that --auto chooses and what they take to store; a 12-megapixel photograph; hostile inputs.
@@ -18,7 +18,7 @@ from pathlib import Path
 import numpy as np
 import skimage.data
 from PIL import Image
-from scipy.ndimage import gaussian_filter
+from scipy.ndimage import gaussian_filter, map_coordinates
 from scipy.spatial import cKDTree
 
 from penink_cli.arrangement import detection
@@ -339,8 +339,44 @@ def hostile(count: int) -> None:
     print(f"\n{count} hostile inputs, {edge_count} edges, every list accepted")
 
 
+def strengths(scenes: int) -> None:
+    """How far strengths are from the scene's own step, on rendered scenes, and two other ways to measure it.
+
+    The truth is the step of the noiseless scene at the middle of each edge, where a true curve is within a pixel. "a
+    segment" is the difference of clean samples 1½ pixels to either side, averaged over the edge; "at the middle" the
+    same at its middle alone: on four scenes 39 % of the strengths as told are off by more than .02, and 9 % and 3 %.
+    """
+    print("strengths: part of the edges off by more than .02, and the median, 95 % of how far off")
+    off: dict[str, list[np.ndarray]] = {"as told": [], "a segment": [], "at the middle": []}
+    for seed in range(scenes):
+        scene = random_scene(seed)
+        photo = scene.photo(0.6, 1.0, seed).astype(np.float32)
+        edges = detect_edges(photo)
+        clean = np.asarray(extract_samples(photo, edges, None), np.float64)
+        points, contrast = scene.curves()
+        a, b = edges.vertices[edges.edges[:, 0]], edges.vertices[edges.edges[:, 1]]
+        away, which = cKDTree(points).query((a + b) / 2)
+        near = away < 1.0
+        along = (b - a) / np.maximum(np.hypot(*(b - a).T), 1e-9)[:, None]
+        normal = np.column_stack([-along[:, 1], along[:, 0]])
+        steps = []
+        for t in (0.1, 0.3, 0.5, 0.7, 0.9):
+            place = a + t * (b - a)
+            sides = [map_coordinates(clean, (place + s * 1.5 * normal)[:, ::-1].T - 0.5, order=1, mode="nearest")
+                     for s in (-1, 1)]  # fmt: skip
+            steps.append(np.abs(sides[1] - sides[0]))
+        assert edges.strength is not None
+        measured = {"as told": edges.strength, "a segment": np.mean(steps, axis=0), "at the middle": steps[2]}
+        for name, found in measured.items():
+            off[name].append(np.abs(found - contrast[which])[near])
+    for name, parts in off.items():
+        far = np.concatenate(parts)
+        print(f"  {name:14}{len(far):6}{np.mean(far > 0.02):8.1%}{np.median(far):8.4f}{np.percentile(far, 95):8.4f}")
+
+
 PARTS = {
     "positions": positions,
+    "strengths": strengths,
     "trips": round_trips,
     "heldout": held_out,
     "hostile": hostile,
@@ -353,7 +389,9 @@ def main() -> None:
     """Print the tables."""
     chosen = [name for name in sys.argv[1:] if name in PARTS]
     quick = "--quick" in sys.argv
-    counts = {"positions": 3 if quick else 8, "trips": 2 if quick else 5, "hostile": 500 if quick else 10_000}
+    counts = {"positions": 8, "strengths": 20, "trips": 5, "hostile": 10_000}
+    if quick:
+        counts = {"positions": 3, "strengths": 4, "trips": 2, "hostile": 500}
     for name in chosen or (counts if quick else PARTS):
         PARTS[name](*([counts[name]] if name in counts else []))  # type: ignore[operator]
 
