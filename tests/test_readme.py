@@ -59,8 +59,8 @@ def blocks() -> list[str]:
     return found
 
 
-# Not run here: make and apt-get, which `make check-roots` runs, Snakemake, which `make cluster` runs, and what never ends,
-# which test_drawing_again.py runs.
+# Not run here: make and apt-get, which `make check-roots` runs, Snakemake, which `make cluster` runs, and what never
+# ends, which test_drawing_again.py runs.
 LEFT_OUT = re.compile(r"make |apt-get |snakemake |photo ──|.* --watch ")
 PHOTO = os.environ.get("README_PHOTO", "600x400")  # 3000x2000: as large as a telephone's, some minutes
 

@@ -69,12 +69,36 @@ def turned_paper(paper: str, landscape: bool) -> tuple[float, float]:
 
 
 def ink_box(strokes: Strokes) -> tuple[float, float, float, float] | None:
-    """x0, y0, x1, y1 of a box that holds all ink of these strokes (y down), by their control points."""
+    """x0, y0, x1, y1 of a box that holds all ink of these strokes (y down); it is no larger than their curves reach."""
     if not len(strokes):
         return None
     half = _radii(strokes)[:, None]
-    low, high = (strokes.points - half).min(axis=0), (strokes.points + half).max(axis=0)
+    number = np.arange(len(strokes.points)) - np.repeat(strokes.first[:-1], np.diff(strokes.first))
+    knot = number % 3 == 0
+    low, high = (strokes.points - half)[knot].min(axis=0), (strokes.points + half)[knot].max(axis=0)
+    # Most curves lie within that. Of the others, only what lies beyond matters.
+    beyond = ((strokes.points - half < low) | (strokes.points + half > high)).any(axis=1) & ~knot
+    last = np.unique(np.flatnonzero(beyond) + 3 - number[beyond] % 3)
+    if len(last):
+        segments = last[:, None] + np.arange(-3, 1)
+        reach = _turning_points(strokes.points[segments])
+        wide = half[segments].max(axis=1)[:, None]
+        low = np.minimum(low, (reach - wide).min(axis=(0, 1)))
+        high = np.maximum(high, (reach + wide).max(axis=(0, 1)))
     return float(low[0]), float(low[1]), float(high[0]), float(high[1])
+
+
+def _turning_points(curves: Floats) -> Floats:
+    """Where cubic curves (n, 4, 2) turn back along x and along y, and where they begin and end: (n, 4, 2)."""
+    p0, p1, p2, p3 = np.moveaxis(curves, 1, 0)
+    a, b, c = p3 - p0 + 3 * (p1 - p2), 2 * (p0 - 2 * p1 + p2), p1 - p0  # a t² + b t + c = 0
+    root = np.sqrt(np.maximum(b * b - 4 * a * c, 0.0))
+    q = -(b + np.copysign(root, b)) / 2  # without cancellation: the roots are q / a and c / q
+    with np.errstate(divide="ignore", invalid="ignore"):
+        t = np.clip(np.nan_to_num(np.stack([q / a, c / q]), posinf=0.0, neginf=0.0), 0.0, 1.0)
+    u = 1 - t
+    turns = u * u * u * p0 + 3 * u * u * t * p1 + 3 * u * t * t * p2 + t * t * t * p3
+    return np.concatenate([np.moveaxis(turns, 0, 1), curves[:, ::3]], axis=1)
 
 
 def _radii(strokes: Strokes) -> Floats:

@@ -69,11 +69,12 @@ if __name__ == "__main__":
 
     import penink_cli.commands
 
-    for room in ("reconstruction", "formats", "composition"):  # once, and not in each child
+    # Once, and not in each child.
+    for room in ("reconstruction", "formats", "composition", "lines", "blasting", "arrangement"):
         for module in pkgutil.walk_packages([f"{penink_cli.__path__[0]}/{room}"], f"penink_cli.{room}."):
             if "_compiled" not in module.name:
                 importlib.import_module(module.name)
-    for name in ("enlarge", "reduce", "compose"):
+    for name in ("enlarge", "reduce", "compose", "detect_lines", "detect_edges", "outline"):
         importlib.import_module(f"penink_cli.commands.{name}")
     shim = ctypes.CDLL(None)
     shim.shortage_of.argtypes = (ctypes.c_char_p, ctypes.c_long)

@@ -73,7 +73,10 @@ BEGINS = {
     "draw": b"%!PS", "show-edges": b"<?xml", "show-directions": b"<?xml", "measure": b"tone",
 }  # fmt: skip
 
-DESERVED = (b": warning: the drawing is ", b": warning: the photo uses ", b": warning: a drawing without a stroke")
+DESERVED = (
+    b": warning: the drawing is ", b": warning: the photo uses ", b": warning: a drawing without a stroke",
+    b": warning: the edges are of a picture of ",
+)  # fmt: skip
 
 of_images = [name for name, call in CALLS.items() if call.reads in ("samples.pgm", "photo.png")]
 of_edges = [name for name, call in CALLS.items() if call.reads == "photo.edges.json"]

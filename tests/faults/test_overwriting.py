@@ -102,7 +102,7 @@ def commands():
 
 
 def path_parameters(command, output: bool):
-    paths = [p for p in command.params if isinstance(p.type, click.Path)]
+    paths = [p for p in command.params if isinstance(p.type, click.Path) and p.type.file_okay]
     return [p for p in paths if isinstance(p.type, options.OutputFile) == output]
 
 

@@ -30,6 +30,9 @@ COMMANDS = [
     (["enlarge", "small.pgm", *EDGES, "--scale", "0.4"], ["search"]),
     (["reduce", "small.pgm", *EDGES, "--factor", "3", "--fit", "lsq", "--photo", "small.pgm"], SEARCH),
     (["compose", "small.pgm", "--width", "1in"], ["filters"]),
+    (["detect-lines", "small.pgm"], ["masks"]),
+    (["detect-edges", "small.pgm"], ["ridges"]),
+    (["outline", "crowd.edges.json", "--width", "1in"], ["curve_fitting"]),
 ]
 
 

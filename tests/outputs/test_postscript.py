@@ -10,7 +10,7 @@ import pytest
 from scipy.spatial import cKDTree
 
 from penink_cli.outputs import postscript
-from penink_cli.outputs.page import lay_out
+from penink_cli.outputs.page import ink_box, lay_out
 from penink_cli.travel.order import ordered
 from tests.outputs.drawings import crosshatch, every_kind, strokes_of
 from tests.outputs.rendering import difference, ghostscript
@@ -205,3 +205,16 @@ def test_layers_have_their_colours(tmp_path):
 def test_nothing_to_draw_is_a_blank_page(tmp_path):
     (tmp_path / "a.ps").write_bytes(written([strokes_of([], 1, 30, 20)]))
     assert (ghostscript(tmp_path / "a.ps", 72, True, "-dEPSCrop") == 255).all()
+
+
+def test_the_box_is_where_curves_reach_and_not_their_control_points():
+    rng = np.random.default_rng(0)
+    points = rng.normal(50, 20, (60, 4, 2)).round(3)
+    strokes = strokes_of(list(points), 2.0, 100, 100)
+    t = np.linspace(0, 1, 4001)[:, None, None]
+    p0, p1, p2, p3 = np.moveaxis(points, 1, 0)
+    on = (1 - t) ** 3 * p0 + 3 * (1 - t) ** 2 * t * p1 + 3 * (1 - t) * t * t * p2 + t**3 * p3
+    seen = [*(on.min(axis=(0, 1)) - 1), *(on.max(axis=(0, 1)) + 1)]
+    assert np.allclose(ink_box(strokes), seen, atol=1e-4)
+    controls = [*(points.min(axis=(0, 1)) - 1), *(points.max(axis=(0, 1)) + 1)]
+    assert not np.allclose(controls, seen, atol=0.5)

@@ -97,6 +97,15 @@ class Page:
                 self.requests.append(params["request"]["url"][:200])
         return event
 
+    def _asked(self, expression: str) -> Any:
+        """The answer of the page; None where it was reloaded before it could give one."""
+        try:
+            return self.evaluate(expression)
+        except AssertionError as error:
+            if "navigated" not in str(error):
+                raise
+            return None
+
     def evaluate(self, expression: str) -> Any:
         result = self.call("Runtime.evaluate", expression=expression, awaitPromise=True, returnByValue=True)
         assert "exceptionDetails" not in result, result["exceptionDetails"]
@@ -104,7 +113,7 @@ class Page:
 
     def until(self, expression: str) -> None:
         """Wait, in the page, for what the expression says."""
-        while not self.evaluate(f"new Promise(done => requestAnimationFrame(() => done(!!({expression}))))"):
+        while not self._asked(f"new Promise(done => requestAnimationFrame(() => done(!!({expression}))))"):
             pass
 
     def screenshot(self) -> np.ndarray:
