@@ -25,7 +25,7 @@ FLOORS = (
     ("illustration", "measuring"),
     ("options",),
     ("main",),
-    ("manual",),
+    ("manual", "chain"),
     ("commands",),
     ("__main__",),
 )

@@ -40,7 +40,7 @@ def list_styles(output: str | None, **_: Any) -> None:
 @output_options
 def show(name: str, output: str | None, **_: Any) -> None:
     """Write a style's file, to be changed and used; one of your own is checked on the way."""
-    from penink_cli.commands.chain import check
+    from penink_cli.chain.words import check
     from penink_cli.formats import style as style_format
 
     if is_file(name):

@@ -48,11 +48,11 @@ def canny(path):
 
 def child():
     """One call of `draw` in this process; prints what each filter took, start-up and the rest beside them, as JSON."""
-    from penink_cli.commands import chain
+    from penink_cli.chain import filters
     from penink_cli.main import penink
 
     spent = {"start": time.process_time()}
-    run = chain.Chain.run
+    run = filters.Chain.run
 
     def timed(self, filter_name, *rest, **named):
         start = time.process_time()
@@ -61,7 +61,7 @@ def child():
         finally:
             spent[filter_name] = spent.get(filter_name, 0) + time.process_time() - start
 
-    chain.Chain.run = timed
+    filters.Chain.run = timed
     wall = time.perf_counter()
     penink.main(["draw", "--quiet", *sys.argv[2:]], standalone_mode=False)
     wall = time.perf_counter() - wall

@@ -8,7 +8,7 @@ import json
 import jsonschema
 import pytest
 
-from penink_cli.commands.chain import FILTERS, check, options_of
+from penink_cli.chain.words import FILTERS, check, options_of
 from penink_cli.formats import style as style_format
 from penink_cli.ground.errors import FormatError
 from penink_cli.options.styles import find_style, shipped, style_text

@@ -11,7 +11,7 @@ import pytest
 from PIL import Image
 from scipy.ndimage import gaussian_filter
 
-from penink_cli.commands.chain import Kept
+from penink_cli.chain.kept import Kept
 from penink_cli.ground.errors import PeninkError
 from penink_cli.main import penink as command
 from penink_cli.options import watching

@@ -1,0 +1,69 @@
+"""One photo drawn: its size on paper, then the filters in their order."""
+
+from __future__ import annotations
+
+import shlex
+
+from penink_cli.chain import finer_pens, found
+from penink_cli.chain.filters import Chain
+from penink_cli.chain.hatched import hatch
+from penink_cli.chain.job import Job
+from penink_cli.chain.kept import Kept
+from penink_cli.chain.manifest import illustrate
+from penink_cli.chain.plates import Plate, plates
+from penink_cli.chain.request import Request
+from penink_cli.options.common import reporter
+from penink_cli.options.inputs import photo_words, read_colours
+from penink_cli.options.progress import progress
+from penink_cli.options.sheet import check_sheet
+from penink_cli.outputs.registry import of_illustrations, on_screen
+
+USUAL_WIDTH = 432.0  # points
+PRINTER_DPI = 600.0
+
+
+def draw_one(
+    request: Request, file: str | None, output: str | None, bench: dict[str, bytes], kept: Kept | None = None,
+    quiet: bool = False,
+) -> None:  # fmt: skip
+    """Draw a photo (None: standard input) into a file (None: standard output).
+
+    bench: the workbench. kept: what filters have made before, for a drawing that follows its files.
+    """
+    options, given = request.options, request.given
+    width, max_pixels = options["width"], options["max_pixels"]
+    stages = request.stages()
+    inks = options["inks"]
+    steps = 9 if inks is None else 6 + 4 * len(inks.names)
+    with progress(steps, "draw", quiet or options["quiet"]) as advance:
+        shape = read_colours(file, max_pixels).values.shape
+        rows, columns = shape[:2]
+        if options["height"] is not None:
+            width = options["height"] * columns / rows
+        if width is None:
+            width = min(USUAL_WIDTH, request.room(rows / columns))
+        check_sheet(width, width * rows / columns, max_pixels)
+        taken = (file, output, given.get("mask"), given.get("directions_file"), given.get("texture_name"))
+        limit = max_pixels if "max_pixels" in given else None
+        say = reporter(options["verbose"])
+        chain = Chain(bench, taken, options["threads"], limit, say, lambda: advance(1), kept)
+        device_dpi = given.get("device_dpi", None if on_screen(request.ending) else PRINTER_DPI)
+        job = Job(chain, stages, given, width, rows / columns, request.ending, device_dpi, inks)
+        _draw(job, file, shape, output, request.page)
+    if kept is not None:
+        kept.forget_others()
+
+
+def _draw(job: Job, file: str | None, shape: tuple[int, ...], output: str | None, page: list[str]) -> None:
+    """The filters in their order. shape: rows and columns of the photo."""
+    finer_pens.refine(job)
+    photo = [*shlex.split(photo_words()), "-" if file is None else file]
+    grey, size = found.grey(job, photo, shape)
+    edges = found.edges(job, grey, size)
+    lines = found.lines(job, photo)
+    directions = found.directions(job, photo, edges, lines)
+    of_each = plates(job, photo, shape) if job.inks else [Plate(grey, size)]
+    if of_illustrations(job.ending):
+        illustrate(job, of_each, size, edges, lines, directions, output, page)
+        return
+    hatch(job, of_each, size, edges, lines, directions, output, page)

@@ -1,0 +1,110 @@
+"""Filters run one after another in one process, as in a pipe, and the command lines that do the same by hand.
+
+`draw` is such a chain, and what --verbose prints of it is what has been run: the bytes are the same because nothing
+else made them. What one filter hands to the next lies on a workbench, in no file.
+"""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+
+import click
+
+from penink_cli.chain.kept import Kept
+from penink_cli.ground import streams
+from penink_cli.ground.changes import noting
+from penink_cli.ground.errors import PeninkError
+from penink_cli.main import penink
+from penink_cli.options.common import warning_once
+
+
+class Chain:
+    """say: receives each command line, once it has run. step: is told after each filter. kept: from chains before."""
+
+    def __init__(
+        self, bench: dict[str, bytes], taken: Iterable[str | None], threads: int | None, max_pixels: int | None,
+        say: Callable[[str], None], step: Callable[[], None], kept: Kept | None = None,
+    ):  # fmt: skip
+        self._bench, self._say, self._step, self._kept = bench, say, step, kept
+        self._taken = {path for path in taken if path is not None}
+        self._common = {"quiet": "--quiet"}
+        if max_pixels is not None:
+            self._common["max_pixels"] = f"--max-pixels={max_pixels}"
+        if threads is not None:
+            self._common["threads"] = f"--threads={threads}"
+
+    def name(self, wanted: str) -> str:
+        """A name on the bench that is none of the user's own files."""
+        while wanted in self._taken:
+            wanted = f"drawing-{wanted}"
+        self._bench.setdefault(wanted, b"")
+        return wanted
+
+    def put(self, name: str, text: str) -> None:
+        """A file that no filter has written."""
+        self._bench[name] = text.encode()
+        self._say(f"cat > {shlex.quote(name)} <<'END'\n{text}END")
+
+    def run(self, filter_name: str, words: list[str], output: str | None, may_fail: bool = False) -> bool:
+        """Run a filter; output: a name on the bench, or the user's, None for standard output. Whether all was well."""
+        command = found(filter_name)
+        known = {parameter.name for parameter in command.params}
+        common = [word for parameter, word in self._common.items() if parameter in known]
+        target = [] if output is None else ["-o", output]
+        call = (filter_name, *words)
+        made = self._kept.made(call) if self._kept and output in self._bench else None
+        if made is not None:
+            self._bench[str(output)] = made
+        else:
+            with noting() as read:
+                try:
+                    command.main([*common, *words, *target], prog_name=_program(), standalone_mode=False)
+                except PeninkError:
+                    if may_fail:
+                        return False
+                    raise
+            if self._kept and output in self._bench:
+                self._kept.keep(call, read, self._bench[str(output)])
+        self._say(shlex.join(["penink", *call, *target]))
+        self._step()
+        return True
+
+    def lines(self, name: str) -> int:
+        """How many lines of text a file on the bench has: of strokes, one more than there are strokes."""
+        return self._bench[name].count(b"\n")
+
+    def joined(self, names: list[str], output: str | None) -> None:
+        """The strokes of several files as one list; `draw` alone writes that."""
+        from penink_cli.formats import strokes
+        from penink_cli.ground.model import Strokes
+        from penink_cli.options.layers import read_layers
+
+        whole = Strokes.joined(read_layers(names))
+        with streams.writing(output, binary=False) as out:
+            strokes.write(out, whole)
+        self._say(f"# the strokes of {' '.join(map(shlex.quote, names))} on one sheet")
+
+
+def _program() -> str:
+    """The command that warnings name."""
+    context = click.get_current_context(silent=True)
+    return context.command_path if context else "penink"
+
+
+def found(filter_name: str) -> click.Command:
+    """The subcommand of that name."""
+    assert isinstance(penink, click.Group)
+    command = penink.get_command(click.Context(penink), filter_name)
+    assert command is not None, filter_name
+    return command
+
+
+@contextmanager
+def bench() -> Iterator[dict[str, bytes]]:
+    """A workbench, on which photographs are remembered too, and nothing is warned of twice."""
+    from penink_cli.options.inputs import remembering_photos
+
+    with streams.workbench({}) as files, remembering_photos(), warning_once():
+        yield files

@@ -1,0 +1,69 @@
+"""What is found in a photo before a stroke is drawn: its grey, its edges, its telling lines, its directions."""
+
+from __future__ import annotations
+
+from penink_cli.chain.job import ARCHIVE, Job, least_length
+from penink_cli.outputs.registry import of_illustrations
+
+COMPOSED_DPI = 288.0  # as `compose` has it
+POSTER_DPI = 1152.0  # pixels an inch that an illustration is made from: those of a drawing four times as wide
+# Squared grey levels a bit that a chain of edges of an archive saves; where --max-bytes makes it coarser afterwards.
+WORTH, RICH_WORTH = 120.0, 40.0
+FIELD_SIDE = 64  # samples of directions along the longer side of an archive
+
+
+def grey(job: Job, photo: list[str], shape: tuple[int, ...]) -> tuple[str, tuple[int, int]]:
+    """The grey of the drawing, and its width and height in pixels. photo: words; shape: its rows and columns."""
+    from penink_cli.composition.compose import working_size
+
+    told = job.words("compose", "compose")
+    told += ["--mask", job.given["mask"]] if "mask" in job.given else []
+    dpi = COMPOSED_DPI
+    if of_illustrations(job.ending):
+        dpi = POSTER_DPI
+        told += ["--dpi", repr(dpi)]
+    name = job.run("compose", [*job.on_paper, *told, *photo], "grey.pgm")
+    return name, working_size(shape, job.width, dpi / 72)
+
+
+def edges(job: Job, grey: str, size: tuple[int, int]) -> str:
+    """The edges of the grey; for an archive those that are worth their bytes, and those that will be outlined."""
+    found = job.run("detect-edges", [*job.words("edges", "detect-edges"), grey], "e.json")
+    if job.ending != ARCHIVE:
+        return found
+    worth = RICH_WORTH if "max_bytes" in job.given else WORTH
+    told = ["--worth", repr(worth), *job.seen_at, "--photo", grey]
+    if "outline" in job.stages:
+        choice = job.stages["outline"]
+        told += ["--keep-strength", str(choice.get("min-strength", 0))]
+        told += ["--keep-length", str(choice.get("min-length", least_length(size)))]
+    return job.run("thin-edges", ["-e", found, *told], "thin.json")
+
+
+def lines(job: Job, photo: list[str]) -> str | None:
+    """The telling lines, where there are to be any."""
+    if "lines" not in job.stages:
+        return None
+    return job.run("detect-lines", [*job.words("lines", "detect-lines"), *job.seen_at, *photo], "lines.json")
+
+
+def directions(job: Job, photo: list[str], edges: str, lines: str | None) -> str | None:
+    """The field that is hatched along, if any."""
+    own = job.given.get("directions_file")
+    if own is None and ("directions" not in job.stages or not _follows(job)):
+        return None
+    if own is not None and own.lower().endswith(".pgm"):
+        return str(own)
+    told = job.words("directions", "detect-directions") if "directions" in job.stages else []
+    if job.ending == ARCHIVE and "size" not in job.stages.get("directions", {}):
+        told += ["--size", str(FIELD_SIDE)]
+    told += ["--lines", lines] if lines else []
+    told += ["--strokes", own] if own is not None else []
+    return job.run("detect-directions", ["-e", edges, *told, *photo], "directions.pgm")
+
+
+def _follows(job: Job) -> bool:
+    """Whether the strokes of the texture can follow a field."""
+    from penink_cli.blasting.rules import rule
+
+    return bool(rule(str(job.stages["blast"].get("rule", "best"))).follows(job.texture))

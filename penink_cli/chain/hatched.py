@@ -1,0 +1,60 @@
+"""Strokes of a drawing: telling lines and outlines first, then the hatching, which counts those as ink."""
+
+from __future__ import annotations
+
+from penink_cli.chain.filters import found
+from penink_cli.chain.job import Job, least_length
+from penink_cli.chain.plates import Plate
+from penink_cli.options.common import warn
+from penink_cli.outputs.registry import writer
+
+
+def hatch(
+    job: Job, plates: list[Plate], size: tuple[int, int], edges: str, lines: str | None, directions: str | None,
+    output: str | None, page: list[str],
+) -> None:  # fmt: skip
+    """Draw all plates and write them. size: width and height of the grey, pixels; page: words for what writes."""
+    over = _over(job, size, edges, lines)
+    along = ["--directions", directions] if directions else []
+    white = ["--lines", lines] if lines else []
+    hatchings = []
+    for plate in plates:
+        grey = _enlarged(job, plate, edges)
+        ink = [word for name in over for word in ("--ink", name)] if plate is plates[-1] else []
+        told = [*job.on_paper, *job.device, *job.words("blast", "blast"), *plate.words(), *along, *white, *ink]
+        hatchings.append(job.run("blast", ["-e", edges, *told, grey], plate.named("hatching.jsonl")))
+    if not any(job.chain.lines(name) > 1 for name in (*hatchings, *over)):
+        warn("a drawing without a stroke: the photo is paper white, or was made so")
+    by = writer(job.ending)
+    if by is None:
+        job.chain.joined([*hatchings, *over], output)
+        return
+    if job.inks is not None:
+        own = [plate.colour for plate in plates] + [plates[-1].colour] * len(over)
+        knows_colours = any(parameter.name == "colours" for parameter in found(by).params)
+        page = page + [word for colour in own * knows_colours for word in ("--color", colour)]
+    job.chain.run(by, [*page, *hatchings, *over], output)
+
+
+def _over(job: Job, size: tuple[int, int], edges: str, lines: str | None) -> list[str]:
+    """Strokes over the hatching, which are ink before it is laid."""
+    result = []
+    if lines:
+        result.append(job.run("lines", [*job.on_paper, *job.words("lines", "lines"), lines], "lines.jsonl"))
+    if "outline" in job.stages:
+        least = [] if "min-length" in job.stages["outline"] else ["--min-length", str(least_length(size))]
+        told = [*job.on_paper, *job.device, *job.words("outline", "outline"), *least]
+        result.append(job.run("outline", [*told, edges], "outlines.jsonl"))
+    return result
+
+
+def _enlarged(job: Job, plate: Plate, edges: str) -> str:
+    """The grey that is blasted: reconstructed where the photo has fewer pixels than the drawing can show."""
+    from penink_cli.illustration.drawing import grey_size
+
+    across, down = grey_size(job.width, job.aspect)
+    if plate.size[0] >= across:
+        return plate.grey
+    samples = job.run("extract-samples", ["-e", edges, plate.grey], plate.named("samples.pgm"))
+    enlarge = ["-e", edges, "--size", f"{across}x{down}", "--soften", samples]
+    return job.run("enlarge", enlarge, plate.named("enlarged.pgm"))

@@ -1,0 +1,66 @@
+"""The grey that each ink draws."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from penink_cli.chain.job import Job
+from penink_cli.ground.codes import code_of
+from penink_cli.options.inks import CMYK
+
+
+@dataclass(frozen=True)
+class Plate:
+    """Grey that one ink draws: of the drawing's only one, or of several.
+
+    size: width and height of the grey, pixels. number: among the inks, from 1; 0 where there is one ink.
+    turn: degrees that its hatching is turned.
+    """
+
+    grey: str
+    size: tuple[int, int]
+    number: int = 0
+    name: str = ""
+    colour: str = ""
+    turn: float = 0.0
+    seed: int = 0
+
+    def named(self, wanted: str) -> str:
+        """A name for what is made of this plate."""
+        return f"{self.number}-{wanted}" if self.number else wanted
+
+    def words(self) -> list[str]:
+        """What `blast` is told of it."""
+        if not self.number:
+            return []
+        return ["--turn", repr(self.turn), "--seed", str(self.seed), "--color", self.colour, "--layer", self.name]
+
+    def members(self) -> dict[str, Any]:
+        """The same, as a manifest has it."""
+        if not self.number:
+            return {}
+        return {"name": self.name, "color": self.colour, "turn": self.turn, "seed": self.seed}
+
+
+def plates(job: Job, photo: list[str], shape: tuple[int, ...]) -> list[Plate]:
+    """The plate of each of the job's inks, the lightest first. photo: words; shape: its rows and columns."""
+    from penink_cli.composition.separation import lightest_first, turns
+
+    assert job.inks is not None
+    n = len(job.inks.names)
+    order = lightest_first(job.inks.colours)
+    layers = job.texture.layers
+    first = layers[0].angle if layers else 0.0
+    apart = [layer.angle - first if layer.turn is None else layer.turn for layer in layers]
+    turned = turns(apart, n)[::-1]  # the darkest lies as the texture has it
+    seed = int(job.stages["blast"].get("seed", 0))
+    told = ["--inks", "cmyk" if job.inks is CMYK else ",".join(job.inks.names)]
+    told += ["--black", repr(job.given["black"])] if "black" in job.given else []
+    result, size = [], (shape[1], shape[0])
+    for place, number in enumerate(order):
+        name = job.inks.names[number]
+        plate = job.run("separate", [*told, "--plate", str(number + 1), *photo], f"plate-{number + 1}.pgm")
+        colour = code_of(job.inks.colours[number])
+        result.append(Plate(plate, size, number + 1, name, colour, turned[place], seed + n - 1 - place))
+    return result
