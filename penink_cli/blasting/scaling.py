@@ -27,7 +27,7 @@ def at_size(texture: Texture, width_pt: float, natural_pt: float | None) -> Text
     scale = max(scale, scales.least_pt / min(strokes.width, strokes.height))
     low, high = scales.spans.T
     there = np.flatnonzero((low <= scale) & (scale < high))
-    chosen = scales.strokes.picked(there)
+    chosen = scales.strokes.taken(there)
     grown = replace(
         chosen, points=chosen.points * scale, width=strokes.width * scale, height=strokes.height * scale
     )

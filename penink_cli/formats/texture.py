@@ -131,10 +131,10 @@ def _scaling(laid: Texture, scales: Any, spans: Floats) -> Texture:
     if not grows.any() or not there.any():
         raise FormatError("scales, and no stroke that grows" if not grows.any() else "no stroke at the natural size")
     growing = Scales(
-        natural, least, fill, laid.strokes.picked(np.flatnonzero(grows)), laid.priorities[grows], spans[grows],
+        natural, least, fill, laid.strokes.taken(np.flatnonzero(grows)), laid.priorities[grows], spans[grows],
         ~grows[there],
     )  # fmt: skip
-    strokes = laid.strokes.picked(np.flatnonzero(there))
+    strokes = laid.strokes.taken(np.flatnonzero(there))
     return Texture(laid.name, strokes, laid.priorities[there], laid.whole, scales=growing)
 
 

@@ -105,7 +105,7 @@ def growing(
     there = np.flatnonzero(np.concatenate([first <= 1, np.ones(len(rest), bool)]))
     grows = np.arange(len(strokes))
     scales = Scales(
-        NATURAL_PT, LEAST_PT, "parallel", whole.strokes.picked(grows), whole.priorities[grows], spans,
+        NATURAL_PT, LEAST_PT, "parallel", whole.strokes.taken(grows), whole.priorities[grows], spans,
         there >= len(strokes),
     )  # fmt: skip
-    return replace(whole, strokes=whole.strokes.picked(there), priorities=whole.priorities[there], scales=scales)
+    return replace(whole, strokes=whole.strokes.taken(there), priorities=whole.priorities[there], scales=scales)
