@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import struct
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -38,3 +40,28 @@ def test_any_bytes_are_a_value_or_one_clean_error(reader, data):
             st.binary(max_size=3) | st.sampled_from([b"true", b"1e999", b"-1", b"[", b'"'])
         )
     judge(reader, bytes(text))
+
+
+@pytest.mark.parametrize("order", "<>")
+@pytest.mark.parametrize("big", [False, True])
+def test_a_tiff_cut_anywhere_or_with_any_place_out_of_reach(big, order):
+    """The directory comes last, and in it a profile's entry: what is cut off is that first."""
+    whole = directory_last(big, order)
+    READERS["photo"](whole)
+    for length in range(len(whole)):
+        judge("photo", whole[:length])
+    for at in range(4, len(whole) - 7):
+        for place in (1 << 62, (1 << 63) - 1, 1 << 63, (1 << 64) - 64, (1 << 64) - 1):
+            judge("photo", whole[:at] + struct.pack(f"{order}Q", place) + whole[at + 8 :])
+
+
+def directory_last(big: bool, order: str) -> bytes:
+    """A TIFF (or a BigTIFF) of 4 x 4 pixels whose directory stands behind them."""
+    word, kind, head = ("Q", 16, 16) if big else ("I", 4, 8)
+    tags = {256: 4, 257: 4, 258: 8, 259: 1, 262: 1, 273: head, 277: 1, 278: 4, 279: 16}
+    entries = [struct.pack(f"{order}HH2{word}", tag, kind, 1, value) for tag, value in tags.items()]
+    entries.append(struct.pack(f"{order}HH2{word}", 34675, 7, 100, 10))
+    start = struct.pack(f"{order}HHHQ", 43, 8, 0, head + 16) if big else struct.pack(f"{order}HI", 42, head + 16)
+    count = struct.pack(f"{order}{'Q' if big else 'H'}", len(entries))
+    pixels = bytes(range(16))
+    return (b"II" if order == "<" else b"MM") + start + pixels + count + b"".join(entries) + bytes(8 if big else 4)

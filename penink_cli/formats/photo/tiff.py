@@ -103,7 +103,7 @@ def _directories(encoded: bytes, order: str, big: bool) -> list[_Directory]:
     """All pictures of the file, those in pictures after these."""
     if len(encoded) < 16:
         raise FormatError("truncated: the TIFF has no directory")
-    first = struct.unpack_from(f"{order}8xQ" if big else f"{order}4xI", encoded)[0]
+    first = _fields(f"{order}8xQ" if big else f"{order}4xI", encoded, 0)[0]
     found: list[_Directory] = []
     seen = set()
     queue = [(first, True)]
@@ -128,13 +128,13 @@ def _directories(encoded: bytes, order: str, big: bool) -> list[_Directory]:
 def _directory(encoded: bytes, at: int, order: str, big: bool, in_chain: bool) -> tuple[_Directory, int]:
     """A directory, and the place of the next; an entry that makes no sense is as if it were not there."""
     directory = _Directory(in_chain)
-    count, size = struct.unpack_from(f"{order}Q" if big else f"{order}H", encoded, at)[0], 20 if big else 12
+    count, size = _fields(f"{order}Q" if big else f"{order}H", encoded, at)[0], 20 if big else 12
     begin = at + (8 if big else 2)
     if count > MOST_ENTRIES:
         raise FormatError(f"damaged TIFF photograph: a directory of {count} entries")
     for i in range(count):
         entry = encoded[begin + size * i : begin + size * (i + 1)]
-        tag, kind, number = struct.unpack_from(f"{order}HHQ" if big else f"{order}HHI", entry)
+        tag, kind, number = _fields(f"{order}HHQ8x" if big else f"{order}HHI4x", entry, 0)  # all of it, the value too
         if kind in SIZES:
             directory.entries[tag] = kind, number, entry
             if kind in WHOLE and 0 < number <= MOST_VALUES:
@@ -144,10 +144,18 @@ def _directory(encoded: bytes, at: int, order: str, big: bool, in_chain: bool) -
     directory.width, directory.height = directory.one(WIDTH), directory.one(HEIGHT)
     _find_jpeg(directory, encoded)
     try:
-        following = struct.unpack_from(f"{order}Q" if big else f"{order}I", encoded, begin + size * count)[0]
+        following = _fields(f"{order}Q" if big else f"{order}I", encoded, begin + size * count)[0]
     except struct.error:
         following = 0
     return directory, following
+
+
+def _fields(form: str, encoded: bytes, at: int) -> tuple[Any, ...]:
+    """What stands at a place that the file names; struct.error where the file ends before.
+
+    A place in a BigTIFF has 64 bits: unpack_from raises OverflowError for one beyond 2^63, a slice is merely empty.
+    """
+    return struct.unpack(form, encoded[at : at + struct.calcsize(form)])
 
 
 def _content(encoded: bytes, entry: tuple[int, int, bytes], order: str, big: bool) -> bytes:
