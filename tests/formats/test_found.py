@@ -47,7 +47,8 @@ def test_any_bytes_are_a_value_or_one_clean_error(reader, data):
 def test_a_tiff_cut_anywhere_or_with_any_place_out_of_reach(big, order):
     """The directory comes last, and in it a profile's entry: what is cut off is that first."""
     whole = directory_last(big, order)
-    READERS["photo"](whole)
+    if not big or order == "<":  # Pillow reads no big-endian BigTIFF
+        READERS["photo"](whole)
     for length in range(len(whole)):
         judge("photo", whole[:length])
     for at in range(4, len(whole) - 7):
