@@ -12,13 +12,12 @@ Lines end at strong edges, and free ends taper to a point.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
-from itertools import pairwise
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 import numpy.typing as npt
 
-from penink_cli.blasting import curves, pen_lines, walls
+from penink_cli.blasting import curves, pen_lines, rims, walls
 from penink_cli.blasting.form import PAD, _blurred, _normal
 from penink_cli.blasting.level_lines import LevelLines, level_lines
 from penink_cli.blasting.low_pass import LowPass
@@ -42,6 +41,8 @@ MOST, CLOSED = 0.97, 1.5
 DASH_PT, GAP_PT, PERIOD_PT, LONGEST_PERIOD_PT, LEAST_GAP_PT, LEAST_TONE = 3.0, 5.0, 12.0, 40.0, 0.7, 0.004
 #: Whether a line breaks up is decided by the mean over so many samples each way; not where it is so many times as dark.
 CALM, SURELY = 5, 1.6
+#: Samples whose widths are made at once.
+CHUNK = 1 << 16
 #: Knots are about so far apart, points; lines are sampled this many times as finely.
 KNOT_PT = 2.0
 #: Free ends taper to this width over so many points, or a share of a short stroke, but the less the darker it is from
@@ -51,9 +52,12 @@ TIP_PT, TAPER_PT, TAPER_SHARE, BLUNT = 0.05, 6.0, 0.4, 0.6
 TAPER_GAP = 1.2
 #: Lines shorter than this are left out.
 SHORTEST_PT = 2.0
-#: Lines come as near to the frame as those of such a pen do. Along it, so far within, runs one that fills what their
-#: round ends leave, where it is darker than this.
-FRAME_PEN_PT, RIM_PT, RIM_TONE = 1.15, 0.4, 0.6
+#: Lines come as near to the frame as those of such a pen do, and to an edge as those of this one, for they narrow
+#: before it.
+FRAME_PEN_PT, END_PT = 1.15, 0.3
+#: So near to an edge the tone is that of a place so far from it on the same side, for it is blurred across the edge;
+#: save where another edge is nearer than such a part.
+CLEAR_PT, THIN = 1.5, 0.6
 #: Lines along a field are moved so many times by such a part of how much further they are from one neighbour.
 EVENINGS, EVENED = 5, 0.18
 #: Their ends are prolonged by so many samples at the most, while lines there are as far apart as this part of their
@@ -71,18 +75,37 @@ class Tracks:
 
     points: (p, 2). first: (n + 1,). step: (n,) distance of samples. bounded: (n, 2) whether an end is at an edge or
     the frame. rim: (n,) whether it is a line along the frame. across: (p,) what a device adds to a line's width there,
-    points. ahead: (p, 2) directions. level, apart: (p,) see `levels` and `distances` in `taking_turns`.
+    points. ahead: (p, 2) directions. level, apart: (p,) see `levels` and `distances` in `taking_turns`. asked: (p, 2)
+    where the tone is read. room: (p,) how wide a line may be that does not reach over an edge.
     """
 
     points: Floats
     first: Ints
     step: Floats
     bounded: Mask
-    rim: Mask
+    rim: Floats
     across: Floats
     ahead: Floats
     level: npt.NDArray[np.int8]
     apart: Floats
+    asked: Floats
+    room: Floats
+
+    def some(self, low: int, high: int) -> Tracks:
+        """Those from low to high."""
+        a, b = self.first[low], self.first[high]
+        of_lines = {"step", "bounded", "rim"}
+        parts = {
+            part.name: getattr(self, part.name)[low:high] if part.name in of_lines else getattr(self, part.name)[a:b]
+            for part in fields(self)
+        }
+        return Tracks(**parts | {"first": self.first[low : high + 1] - a})
+
+    def and_then(self, others: Tracks) -> Tracks:
+        """These and others."""
+        both = [np.concatenate([getattr(self, part.name), getattr(others, part.name)]) for part in fields(self)]
+        both[1] = np.concatenate([self.first, self.first[-1] + others.first[1:]])
+        return Tracks(*both)
 
 
 def engrave(
@@ -119,8 +142,9 @@ def engrave(
         tick()
         strokes = Strokes.joined(
             [
-                _strokes(sheet, engraving, spacing, tracks, part, at)
+                some
                 for tracks, part, at in zip(sets, _parts(wanted, engraving.crosses), begin)
+                for some in _drawn(sheet, engraving, spacing, tracks, part, at)
             ]
         )
         sheet.clear()
@@ -262,54 +286,56 @@ def _slope(values: Plane, axis: int) -> Floats:
 def _cut(
     sheet: Sheet, lines: LevelLines, borders: walls.Walls, spacing: float, finest_pt: float, rim_lines: bool
 ) -> Tracks:
-    """Lines cut at walls, sampled anew."""
-    lines, inner = _with_rim(sheet, lines) if rim_lines else (lines, len(lines.ring))
-    n = len(lines.ring)
+    """Lines cut at walls, sampled anew; and those along borders."""
     along = np.asarray(lines.points, np.float64)
-    polylines = curves.Polylines(along, lines.first)
-    none = np.zeros(n)
-    sheet_wide = replace(borders, box=(0.0, 0.0, sheet.width, sheet.height))  # for those along the frame
-    parts = walls.cut(sheet_wide, polylines, none + 0.5 * spacing, (none, none))
-    length = parts.end - parts.start  # in samples, which are a point or so apart
-    half = np.asarray((parts.start + parts.end) / 2, np.float64)
-    middle = _along(along, lines.first[parts.curve], half, lines.first[parts.curve + 1] - 1)
-    within = ((middle >= borders.box[:2]) & (middle <= borders.box[2:])).all(axis=1) | (parts.curve >= inner)
-    long = (length * pen_lines.STEP_PT >= SHORTEST_PT) & within
+    none = np.zeros(len(lines.ring))
+    parts = walls.cut(borders, curves.Polylines(along, lines.first), none + END_PT, (none, none))
+    # in samples, which are a point or so apart
+    long = (parts.end - parts.start) * pen_lines.STEP_PT >= SHORTEST_PT
     curve, start, end, bounded = parts.curve[long], parts.start[long], parts.end[long], parts.bounded[long]
     steps = np.maximum(2, np.ceil(end - start)).astype(np.int64)
-    first = curves.starts(steps + 1)
     which = np.repeat(np.arange(len(curve)), steps + 1)
     at = start[which] + (end - start)[which] * (curves.ramp(steps + 1) / steps[which])
     points = _along(along, lines.first[curve][which], at, lines.first[curve + 1][which] - 1)
+    first = curves.starts(steps + 1)
+    tracks = _measured(sheet, borders, points, first, spacing)
+    tracks.bounded[:, 0], tracks.bounded[:, 1] = bounded & 1, bounded & 2
+    normals = np.column_stack([-tracks.ahead[:, 1], tracks.ahead[:, 0]])
+    finest = (finest_pt + tracks.across) / spacing
+    light = 1 - np.clip(_at_points(sheet, sheet.tone.astype(np.float64), tracks.asked) / finest / 2, 0.0, 1.0)
+    tracks.level[:] = levels(points, first, normals, light, spacing)
+    tracks.apart[:] = _mean_along(distances(points, first, normals, spacing)[0], first, 2)
+    if not rim_lines:
+        return tracks
+    frame, inner = rims.along_frame(sheet.width, sheet.height), rims.along_edges(borders, sheet.tone)
+    size = np.array([len(line) for line in (*frame, *inner)])
+    others = _measured(sheet, borders, np.concatenate([*frame, *inner]), curves.starts(size), spacing)
+    others.rim[: len(frame)], others.rim[len(frame) :] = rims.FRAME, rims.EDGE
+    others.bounded[:] = True
+    return tracks.and_then(others)
+
+
+def _measured(sheet: Sheet, borders: walls.Walls, points: Floats, first: Ints, spacing: float) -> Tracks:
+    """Tracks that end nowhere at a border, as if alone."""
+    n = len(first) - 1
     legs = np.sqrt((np.diff(points, axis=0) ** 2).sum(axis=1))
     legs = np.append(legs, 0.0)
     legs[first[1:] - 1] = 0.0
-    step = np.add.reduceat(legs, first[:-1]) / steps if len(steps) else np.zeros(0)
+    step = np.add.reduceat(legs, first[:-1]) / (np.diff(first) - 1) if n else np.zeros(0)
     ahead = _ahead(points, first)
     across = sheet.gain_pt * FILLED * np.abs(ahead).sum(axis=1)
-    rim = curve >= inner
-    finest = _at_points(sheet, sheet.tone.astype(np.float64), points) * spacing / (finest_pt + across)
-    light = 1 - np.clip(finest / 2, 0.0, 1.0)
-    light = np.where(rim[which], 0.0, light)
-    normals = np.column_stack([-ahead[:, 1], ahead[:, 0]])
-    level = levels(points, first, normals, light, spacing)
-    apart = _mean_along(distances(points, first, normals, spacing)[0], first, 2)
+    reach = max(CLEAR_PT, spacing * CLOSED / 2)
+    beside = walls.beside(borders, points, reach)
+    push = np.where(beside.away < CLEAR_PT, CLEAR_PT - beside.away, 0.0)
+    asked = points + push[:, None] * beside.out
+    # not so where another edge is near: what is as thin as that has no tone of its own
+    moved = np.flatnonzero(push)
+    thin = moved[walls.beside(borders, asked[moved], THIN * CLEAR_PT).away < THIN * CLEAR_PT]
+    asked[thin] = points[thin]
     return Tracks(
-        points, first, step, np.column_stack([bounded & 1, bounded & 2]) > 0, rim, across, ahead, level, apart
-    )
-
-
-def _with_rim(sheet: Sheet, lines: LevelLines) -> tuple[LevelLines, int]:
-    """The lines and four more along the frame; and how many there were."""
-    w, h, d = sheet.width, sheet.height, RIM_PT
-    corners = np.array([[d, d], [w - d, d], [w - d, h - d], [d, h - d], [d, d]])
-    sides = []
-    for a, b in pairwise(corners):
-        steps = max(2, round(float(np.abs(b - a).sum()) / pen_lines.STEP_PT))
-        sides.append(a + (b - a) * (np.arange(steps + 1) / steps)[:, None])
-    sizes = np.concatenate([np.diff(lines.first), [len(side) for side in sides]])
-    ring = np.concatenate([lines.ring, np.zeros(4, bool)])
-    return LevelLines(np.concatenate([lines.points, *sides]), curves.starts(sizes), ring), len(lines.ring)
+        points, first, step, np.zeros((n, 2), bool), np.zeros((n, 3)), across, ahead,
+        np.zeros(len(points), np.int8), np.full(len(points), spacing), asked, 2 * beside.away - across,
+    )  # fmt: skip
 
 
 def _along(points: Floats, origin: Ints, at: Floats, last: Ints) -> Floats:
@@ -335,12 +361,28 @@ def _ahead(points: Floats, first: Ints) -> Floats:
 # ------------------------------------------------------------------- widths
 
 
+def _drawn(
+    sheet: Sheet, engraving: Engraving, spacing: float, tracks: Tracks, wanted: Floats, begin: Floats
+) -> list[Strokes]:
+    """`_strokes` of so many tracks at once as keeps the memory small, on threads."""
+    cuts = np.searchsorted(tracks.first, np.arange(CHUNK, int(tracks.first[-1]), CHUNK)).tolist()
+    cuts = sorted({0, *cuts, len(tracks.step)})
+    out = [Strokes(sheet.width, sheet.height)] * (len(cuts) - 1)
+
+    def draw(i: int) -> None:
+        low, high = cuts[i : i + 2]
+        out[i] = _strokes(sheet, engraving, spacing, tracks.some(low, high), wanted, begin[low:high])
+
+    sheet.each(draw, range(len(out)))
+    return out
+
+
 def _strokes(
     sheet: Sheet, engraving: Engraving, spacing: float, tracks: Tracks, wanted: Floats, begin: Floats
 ) -> Strokes:
     """The strokes that the tone wanted (rows, columns) asks for along the tracks, whose dashes begin at begin (n,)."""
     which = np.repeat(np.arange(len(tracks.step)), np.diff(tracks.first))
-    tone = _at_points(sheet, wanted, tracks.points)
+    tone = _at_points(sheet, wanted, tracks.asked)
     tone = _smoothed(tone, tracks.first)
     finest = (engraving.finest_pt + tracks.across) / tracks.apart
     width = np.clip(tone, finest, MOST) * tracks.apart - tracks.across
@@ -348,11 +390,13 @@ def _strokes(
     width = width + np.clip((tone - MOST) / (1 - MOST), 0.0, 1.0) * (CLOSED * tracks.apart - width)
     width = _smoothed(width, tracks.first)
     duty, saw = _dashes(engraving, tracks, which, tone, finest, begin)
-    rim = tracks.rim[which]
-    dark = np.clip((tone - RIM_TONE) / (1 - RIM_TONE), 0.0, 1.0)
+    full, low, high = tracks.rim[which].T
+    rim = full > 0
+    dark = np.clip((tone - low) / np.where(rim, high - low, 1.0), 0.0, 1.0)
     room = np.minimum(tracks.points, (sheet.width, sheet.height) - tracks.points).min(axis=1)
     duty = np.where(rim, np.where(dark > 0.05, 1.0, 0.0), duty)
-    width = np.minimum(np.where(rim, 2 * RIM_PT * dark, width), np.maximum(2 * room - 0.1, 0.1))
+    width = np.where(rim, full * dark, width)
+    width = np.minimum(width, np.maximum(np.minimum(2 * room - 0.1, tracks.room), TIP_PT))
     return _runs(sheet, engraving, spacing, tracks, which, duty, saw, width)
 
 

@@ -201,3 +201,45 @@ def cut(walls: Walls, lines: curves.Polylines, painted: Floats, slack: tuple[Flo
     keep &= (p[:, 0] >= low_x) & (p[:, 0] <= high_x) & (p[:, 1] >= low_y) & (p[:, 1] <= high_y)
     bounded = wall[left] | (wall[left + 1] << 1)
     return Pieces(curve[keep], start[keep], end[keep], bounded[keep].astype(np.uint8))
+
+
+@dataclass(frozen=True, eq=False)
+class Beside:
+    """What lies between points and the strong edge nearest to each.
+
+    away: (p,) how far it is, points, or infinity where none is within reach. out: (p, 2) the unit vector from there to
+    the point; nought where none is.
+    """
+
+    away: Floats
+    out: Floats
+
+
+def beside(walls: Walls, points: Floats, reach: float) -> Beside:
+    """The strong edge nearest to each of the points (p, 2) within so many points; the frame is none."""
+    away, out = np.full(len(points), np.inf), np.zeros((len(points), 2))
+    segments = walls.segments[walls.inside > 0]
+    if not len(segments) or not len(points):
+        return Beside(away, out)
+    wide = np.column_stack([np.minimum(segments[:, :2], segments[:, 2:]), np.maximum(segments[:, :2], segments[:, 2:])])
+    wide += np.array([-reach, -reach, reach, reach])
+    low, high = (np.clip(cells, 0, [walls.columns - 1, walls.rows - 1]) for cells in edge_index.cells(wide, CELL_PT))
+    begin, items = edge_index.lists(low, high, walls.columns, walls.rows)
+    at = np.floor(points / CELL_PT).astype(np.int64)
+    cell = np.clip(at[:, 1], 0, walls.rows - 1) * walls.columns + np.clip(at[:, 0], 0, walls.columns - 1)
+    some = np.flatnonzero(begin[cell + 1] > begin[cell])
+    count = begin[cell[some] + 1] - begin[cell[some]]
+    who = np.repeat(some, count)
+    near = segments[items[np.repeat(begin[cell[some]], count) + curves.ramp(count)]]
+    along = near[:, 2:] - near[:, :2]
+    off = points[who] - near[:, :2]
+    length = np.maximum((along * along).sum(axis=1), 1e-18)
+    off -= along * np.clip((off * along).sum(axis=1) / length, 0.0, 1.0)[:, None]
+    square = (off * off).sum(axis=1)
+    # the nearest of each, the first of those as near
+    least = np.minimum.reduceat(square, curves.starts(count)[:-1]) if len(who) else square
+    found = np.flatnonzero((square == np.repeat(least, count)) & (square < reach * reach))[::-1]
+    distance = np.sqrt(square[found])
+    away[who[found]] = distance
+    out[who[found]] = off[found] / np.maximum(distance, 1e-9)[:, None]
+    return Beside(away, out)

@@ -1,5 +1,7 @@
 """Blasting: the tone is true, the lines lie even, edges are clean, nothing depends on size, threads or chance."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -127,6 +129,23 @@ def test_small_outlines_are_no_walls():
             np.column_stack([np.arange(24), (np.arange(24) + 1) % 24]),
         )  # fmt: skip
         assert (len(walls.strong_edges(ring, Sheet(wanted, 144, 144, 0.0))) > 0) == walls_there
+
+
+def test_the_strong_edge_nearest_to_a_point():
+    ends = np.array([[20.0, 20.0], [120.0, 60.0]])
+    sheet = Sheet(flat(0.5), 144, 144, 0.0)
+    built = walls.build(None, sheet, 1.0)
+    built = replace(
+        built, segments=np.concatenate([built.segments, ends.reshape(1, 4)]), inside=np.append(built.inside, 1)
+    )
+    points = np.random.default_rng(1).uniform(0, 144, (4000, 2))
+    part = np.clip(((points - ends[0]) * (ends[1] - ends[0])).sum(axis=1) / 100**2 / 1.16, 0, 1)
+    out = points - (ends[0] + part[:, None] * (ends[1] - ends[0]))
+    away = np.hypot(*out.T)
+    near = away < 3
+    found = walls.beside(built, points, 3.0)
+    assert near.sum() > 50 and np.isinf(found.away[~near]).all() and not found.out[~near].any()
+    assert np.allclose(found.away[near], away[near]) and np.allclose(found.out[near] * away[near, None], out[near])
 
 
 def test_a_dark_picture_has_no_white_rim():

@@ -97,6 +97,21 @@ def test_lines_stop_at_strong_edges():
         assert x.max() < 60.5 or x.min() > 59.5
 
 
+def test_what_is_dark_ends_at_an_edge_without_a_saw():
+    side = 120
+    a, b = np.array([40.0, 0.0]), np.array([75.0, 120.0])  # some 30 degrees from the lines
+    y, x = np.mgrid[0:side, 0:side] + 0.5
+    beyond = (x - a[0]) - (y - a[1]) * (b - a)[0] / (b - a)[1]
+    tone = np.where(beyond < 0, 0.7, 0.1)
+    edges = EdgeList(side, side, np.array([a, b]), np.array([[0, 1]]))
+    page = measures.rendered(blast(tone, side, side, edges, find_texture("engraving"), device_dpi=None), 600)
+    rows, columns = np.mgrid[0 : len(page), 0 : page.shape[1]] * (72 / 600)
+    away = ((columns - a[0]) - (rows - a[1]) * (b - a)[0] / (b - a)[1]) * (b - a)[1] / np.hypot(*(b - a))
+    inner = (rows > 5) & (rows < side - 5)
+    assert page[inner & (away > -0.7) & (away < -0.15)].mean() > 0.93
+    assert page[inner & (away > 0.15) & (away < 1.5)].mean() < 0.2
+
+
 def test_rings_lie_about_their_centre():
     strokes = blast(flat(0.5), 120, 120, None, engraved(along=False, centre=(0.25, 0.75)))
     for i in np.flatnonzero(np.diff(strokes.first) > 30):
