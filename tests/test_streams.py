@@ -14,6 +14,7 @@ import pytest
 
 from penink_cli.ground import streams
 from penink_cli.ground.errors import StreamError
+from penink_cli.ground.streams import inputs
 
 
 def names(folder: Path) -> list[str]:
@@ -270,7 +271,7 @@ def test_a_slow_non_blocking_input_is_read_to_its_end():
     reading, writing = os.pipe()
     os.set_blocking(reading, False)
     writer = threading.Thread(target=lambda: (os.write(writing, b"0123456789" * 50_000), os.close(writing)))
-    raw = streams._Source(reading, "x", owned=True)
+    raw = inputs._Source(reading, "x", owned=True)
     writer.start()
     found = b""
     while piece := raw.read(100_000):
