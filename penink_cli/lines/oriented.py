@@ -62,21 +62,22 @@ def _taps(
     across: float, along: float, r: int, x: float, y: float
 ) -> tuple[npt.NDArray[np.int32], npt.NDArray[np.int32], npt.NDArray[np.float32]]:
     """Rows and columns from the window's corner, and weights, of a filter along (x, y): as many as a multiple of 4."""
-    taps = []
-    for i in range(-r, r + 1):
-        for j in range(-r, r + 1):
-            u, v = j * x + i * y, i * x - j * y
-            low = float(exact.exp(-0.5 * (u / along) ** 2))
-            wide = low * float(exact.exp(-0.5 * (v / (WIDER * across)) ** 2))
-            if wide > CUT:
-                taps.append((i + r, j + r, low * float(exact.exp(-0.5 * (v / across) ** 2)), wide))
-    a, b = math.fsum(t[2] for t in taps), math.fsum(t[3] for t in taps)
-    weights = [round(t[3] / b - t[2] / a, 9) for t in taps]
-    weights[len(taps) // 2] -= math.fsum(weights)  # even ground answers with nothing
-    spare = -len(taps) % 4
-    rows = np.array([t[0] for t in taps] + [r] * spare, np.int32)
-    columns = np.array([t[1] for t in taps] + [r] * spare, np.int32)
+    i, j = np.divmod(np.arange((2 * r + 1) ** 2), 2 * r + 1)
+    u, v = (j - r) * x + (i - r) * y, (i - r) * x - (j - r) * y
+    low = exact.exp(-0.5 * _square(u / along))
+    wide = low * exact.exp(-0.5 * _square(v / (WIDER * across)))
+    seen = np.flatnonzero(wide > CUT)
+    narrow = low[seen] * exact.exp(-0.5 * _square(v[seen] / across))
+    a, b = math.fsum(narrow), math.fsum(wide[seen])
+    weights = [round(w / b - n / a, 9) for w, n in zip(wide[seen].tolist(), narrow.tolist())]
+    weights[len(weights) // 2] -= math.fsum(weights)  # even ground answers with nothing
+    spare = -len(weights) % 4
+    rows, columns = (np.concatenate([k[seen], np.full(spare, r)]).astype(np.int32) for k in (i, j))
     return rows, columns, np.array(weights + [0.0] * spare, np.float32)
+
+
+def _square(x: Floats) -> Floats:
+    return x * x
 
 
 def strongest(bank: Bank, sign: float, threads: int) -> tuple[Picture, Picture]:
