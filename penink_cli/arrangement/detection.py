@@ -19,6 +19,7 @@ from penink_cli.arrangement.planar import from_units, planar, to_units
 from penink_cli.arrangement.simplification import simplify
 from penink_cli.arrangement.smoothing import position_error, smooth, unbend
 from penink_cli.ground import exact
+from penink_cli.ground.median import median
 from penink_cli.ground.model import EdgeList, Floats
 
 TOLERANCE = 0.3
@@ -97,7 +98,7 @@ def _blur(points: EdgePoints, chains: Chains, sigma: float) -> float:
     widths = widths[widths > 0]
     if not len(widths):
         return float(exact.hypot(sigma, _CAMERA_BLUR))
-    return float(np.clip(np.median(widths), sigma, 3 * sigma))
+    return float(np.clip(median(widths), sigma, 3 * sigma))
 
 
 def _telling(points: EdgePoints, chains: Chains, high: float, min_length: float, sigma: float) -> Chains:

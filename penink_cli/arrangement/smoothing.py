@@ -8,6 +8,7 @@ from penink_cli.arrangement._compiled import smoothing as _smoothing
 from penink_cli.arrangement.chains import Chains
 from penink_cli.arrangement.gradient import EdgePoints
 from penink_cli.ground import exact
+from penink_cli.ground.median import median
 from penink_cli.ground.model import Floats
 
 _OWN_ERROR = 0.01  # pixels: of a point in a picture without noise
@@ -49,7 +50,7 @@ def smooth(position: Floats, chains: Chains, error: Floats) -> Floats:
         places = np.ascontiguousarray(position[order])
         _smoothing.smooth(places, roughness**2 / error[order] ** 2, first, room)
         moved = exact.length(places - position[order]) / error[order]
-        if roughness > _ROUGHEST or np.median(moved[inner]) <= _MOST_MOVED:
+        if roughness > _ROUGHEST or median(moved[inner]) <= _MOST_MOVED:
             break
         roughness *= 2
     smoothed = position.copy()

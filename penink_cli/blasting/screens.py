@@ -46,6 +46,7 @@ from penink_cli.blasting.tile import thresholds
 from penink_cli.ground import exact
 from penink_cli.ground.angles import direction
 from penink_cli.ground.errors import ParameterError
+from penink_cli.ground.median import median
 from penink_cli.ground.model import Floats, HatchLayer, Ints, Texture
 
 Bytes = npt.NDArray[np.uint8]
@@ -223,7 +224,7 @@ LATEST = 0.9
 def strokes(texture: Texture) -> Screen:
     """The screen of any other texture: the segments of its tile's strokes, on a grid of 1/4 pt."""
     tile = texture.strokes
-    pen = float(np.median(tile.widths)) + WIDENED
+    pen = float(median(tile.widths)) + WIDENED
     enters = thresholds(texture, PIXEL)
     points, limits, equal = [], [], []
     for i in np.flatnonzero(enters <= LATEST).tolist():
@@ -285,9 +286,9 @@ def table(texture: Texture, pen_pt: float | None = None) -> ThresholdTable:
     """The threshold table of any texture; pen_pt: one pen for all its strokes."""
     if texture.oriented:
         raise ParameterError(f"the texture {texture.name} is a set of strokes, which only blast and render can lay")
-    pen = pen_pt or (float(np.median(texture.strokes.widths)) if len(texture.strokes) else 0.4)
+    pen = pen_pt or (float(median(texture.strokes.widths)) if len(texture.strokes) else 0.4)
     if not texture.layers:
-        own = float(np.median(texture.strokes.widths)) + WIDENED
+        own = float(median(texture.strokes.widths)) + WIDENED
         magnification = (pen + WIDENED) / own
         first = strokes(texture)
         return ThresholdTable(

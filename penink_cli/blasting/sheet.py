@@ -19,7 +19,7 @@ This module alone imports the compiled kernels `_ink`, `_placing`, `_press` and 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 
 import numpy as np
 import numpy.typing as npt
@@ -30,6 +30,7 @@ from penink_cli.blasting._compiled import press as _press
 from penink_cli.blasting._compiled import swelling as _swelling
 from penink_cli.blasting.curves import Polylines, pieces_of, sample
 from penink_cli.blasting.low_pass import Cells, LowPass
+from penink_cli.ground import threads as threading
 from penink_cli.ground.model import Floats, Ints, Strokes
 
 CELL_PT = 0.96
@@ -253,13 +254,7 @@ class Sheet:
 
     def each(self, work, items) -> None:  # type: ignore[no-untyped-def]
         """Run work over each of the items, on threads if there are to be any."""
-        items = list(items)
-        if self.threads == 1 or len(items) < 2:
-            for item in items:
-                work(item)
-            return
-        with ThreadPoolExecutor(self.threads) as pool:
-            list(pool.map(work, items))
+        threading.share([partial(work, item) for item in items], self.threads)
 
 
 def coverage(strokes: Strokes, rows: int, columns: int, wider_pt: float = 0.0) -> Cells:

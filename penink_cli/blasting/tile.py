@@ -9,6 +9,7 @@ import numpy as np
 
 from penink_cli.blasting import curves, walls
 from penink_cli.blasting.sheet import SIGMA_PT, Cells, Sheet
+from penink_cli.ground.median import median
 from penink_cli.ground.model import EdgeList, Floats, Ints, Strokes, Texture
 
 #: What a run of ink must gain, in cells × tone.
@@ -68,7 +69,7 @@ def darkness(texture: Texture, gain_pt: float) -> float:
         pieces = curves.pieces_of(points, first, STEP_PT)
         sheet.paint(curves.sample(points, first, pieces), strokes.widths[i : i + 1])
         peaks.append(float(sheet.low_pass(sheet.ink).max()))
-    return float(np.median(peaks)) if peaks else 1.0
+    return float(median(np.array(peaks))) if peaks else 1.0
 
 
 def crowd(sheet: Sheet, texture: Texture) -> Cells:

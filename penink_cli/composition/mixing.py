@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from penink_cli.composition.filters import Picture, looked_up, shrunk
 from penink_cli.ground.colour import lab_of_light
+from penink_cli.ground.median import median
 
 Weights = tuple[float, float, float]
 
@@ -37,9 +38,9 @@ def without_rim(values: npt.NDArray[np.generic], maxval: int) -> npt.NDArray[np.
         steps = np.abs(np.diff(lines, axis=0))
         if steps.ndim == 3:
             steps = (steps[..., 0] + steps[..., 1] + steps[..., 2]) / np.float32(3)
-        step = np.median(steps, axis=1)
+        step = median(steps, axis=1)
         inner = step[_BORDER + 2 :]
-        least = max(_RIM, _TYPICAL * float(np.median(inner)), _STRONG * float(np.sort(inner)[len(inner) * 9 // 10]))
+        least = max(_RIM, _TYPICAL * float(median(inner)), _STRONG * float(np.sort(inner)[len(inner) * 9 // 10]))
         found = [i for i in range(_BORDER) if step[i] > least]
         if found:
             if result is values:

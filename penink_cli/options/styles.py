@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import io
-from importlib import resources
+import os
 from typing import TYPE_CHECKING
 
+from penink_cli import styles
 from penink_cli.ground.errors import ParameterError, printable
 from penink_cli.ground.streams import reading, source_name
 from penink_cli.options.common import NameOrFile, is_file
@@ -14,12 +15,12 @@ if TYPE_CHECKING:
     from penink_cli.formats.style import Style
 
 ENDING = ".style.json"
+_FOLDER = os.path.dirname(styles.__file__)  # `importlib.resources` takes longer to load than all the rest of this
 
 
 def shipped() -> list[str]:
     """Names of the styles that come with the program."""
-    styles = resources.files("penink_cli.styles")
-    return sorted(f.name.removesuffix(ENDING) for f in styles.iterdir() if f.name.endswith(ENDING))
+    return sorted(name.removesuffix(ENDING) for name in os.listdir(_FOLDER) if name.endswith(ENDING))
 
 
 STYLE = NameOrFile(shipped)
@@ -29,7 +30,8 @@ def style_text(name: str) -> bytes:
     """The file of a shipped style, as it is."""
     if name not in shipped():
         raise ParameterError(f"no style {printable(name, 60)}; known are {', '.join(shipped())}, or give a file")
-    return (resources.files("penink_cli.styles") / (name + ENDING)).read_bytes()
+    with open(os.path.join(_FOLDER, name + ENDING), "rb") as file:
+        return file.read()
 
 
 def find_style(name: str) -> Style:

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import gzip
 import io
+import os
 from collections.abc import Callable
-from importlib import resources
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
+from penink_cli import textures
 from penink_cli.ground.errors import ParameterError, printable
 from penink_cli.ground.streams import reading, source_name
 from penink_cli.options.common import NameOrFile, is_file
@@ -51,10 +53,20 @@ def find_texture(name: str) -> Texture:
             return texture_format.read(stream, source_name(name))
     if name not in shipped():
         raise ParameterError(f"no texture {printable(name, 60)}; known are {', '.join(shipped())}, or give a file")
-    tile = resources.files("penink_cli.textures") / "tiles" / (name + ENDING)
-    if tile.is_file():
-        return texture_format.read(io.BytesIO(gzip.decompress(tile.read_bytes())), tile.name)
-    return texture_format.read(io.BytesIO(made(name)), name)  # not packed yet: some seconds
+    return _shipped(name)
+
+
+@lru_cache(maxsize=2)
+def _shipped(name: str) -> Texture:
+    """A shipped texture, whose files never change: `draw` asks for one several times."""
+    from penink_cli.formats import texture as texture_format
+
+    try:
+        with open(os.path.join(os.path.dirname(textures.__file__), "tiles", name + ENDING), "rb") as file:
+            packed = file.read()
+    except FileNotFoundError:
+        return texture_format.read(io.BytesIO(made(name)), name)  # not packed yet: some seconds
+    return texture_format.read(io.BytesIO(gzip.decompress(packed)), name + ENDING)
 
 
 def made(name: str) -> bytes:

@@ -11,6 +11,7 @@ from penink_cli.blasting.rules import engrave
 from penink_cli.blasting.sheet import Sheet
 from penink_cli.blasting.task import Begun, Task
 from penink_cli.ground.device import MEAN
+from penink_cli.ground.median import median
 from penink_cli.ground.model import Strokes, Texture
 
 SETS = True
@@ -65,7 +66,7 @@ def _grown(task: Task, begun: Begun) -> Strokes:
     for there in (task.outlines, begun.small, first):
         if there is not None:
             hatching.draw_first(sheet, there)
-    pen = float(np.median(task.texture.strokes.widths))
+    pen = float(median(task.texture.strokes.widths))
     layers = tuple(replace(layer, pen_pt=pen) for layer in scaling.FILLS[task.texture.scales.fill])
     filled = hatching.hatch_sheet(
         sheet, layers, task.edges, task.gain, task.seed, task.pen_pt, task.tick, None, begun.told
