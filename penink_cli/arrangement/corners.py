@@ -1,4 +1,4 @@
-"""Corners that blur has rounded, given back their points."""
+"""Corners that blur has rounded, given back their points. This module alone imports the compiled kernel `corners`."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from penink_cli.arrangement._compiled import corners as _corners_kernel
 from penink_cli.arrangement.chains import Chains
 from penink_cli.arrangement.gradient import EdgePoints
 from penink_cli.ground import exact
@@ -81,15 +82,13 @@ def _corners(
 
     t = np.arange(stretch) - (stretch - 1) / 2
     square = t * t - (t * t).mean()
+    weights = np.stack([t / (t * t).sum(), square / (square * square).sum()])
+    chain = tuple(np.ascontiguousarray(part, np.int64) for part in (first, place, length))
 
     def line(sign: int) -> tuple[Floats, Floats, Floats]:
         """Where the straight stretch that begins `skip` away begins, its direction towards the corner, its bow."""
-        mean, slope, bend = np.zeros((3, len(at), 2))
-        for k in range(stretch):
-            q = p[first + (place + sign * (skip + k)) % length]
-            mean += q / stretch
-            slope += t[k] / (t * t).sum() * q
-            bend += square[k] / (square * square).sum() * q
+        mean, slope, bend = found = np.empty((3, len(at), 2))
+        _corners_kernel.stretches(p, *chain, sign * skip, sign, weights, found)
         size = np.maximum(1e-9, exact.length(slope))[:, None]
         return mean - slope * (stretch - 1) / 2, -slope / size, bend * (stretch - 1) ** 2 / 4
 

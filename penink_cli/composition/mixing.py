@@ -3,6 +3,8 @@
 Luma gives many colours that differ to the eye the same grey: the red and the green of a parrot, say. So weights that
 sum to 1 are tried in steps of a tenth, and those taken that keep the most of the differences between places that lie
 near each other (after Gooch et al., Color2Gray, 2005, and Lu et al., Contrast Preserving Decolorization, 2012).
+
+This module alone imports the compiled kernel `mixing`.
 """
 
 from __future__ import annotations
@@ -10,6 +12,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from penink_cli.composition._compiled import mixing as _mixing
 from penink_cli.composition.filters import Picture, looked_up, shrunk
 from penink_cli.ground.colour import lab_of_light
 from penink_cli.ground.median import median
@@ -59,9 +62,13 @@ def chosen_mix(colours: Picture, pixels_per_pt: float) -> Weights:
     seen = lab(small)
     pairs = [(a, b) for a, b in (_pair(red.shape, *by) for by in _OFFSETS) if red[a].size]
     wanted = [np.sqrt(_squares(seen[a] - seen[b])) / 100 for a, b in pairs]
+    if not pairs:
+        return LUMA
     kept = [w > _UNSEEN for w in wanted]
-    wanted = [w[k] for w, k in zip(wanted, kept)]
-    whole = sum(_total(w) for w in wanted)  # whole numbers
+    worth_keeping = np.concatenate([w[k] for w, k in zip(wanted, kept)])
+    number = np.arange(red.size, dtype=np.int32).reshape(red.shape)
+    one, other = (np.concatenate([number[pair[end]][k] for pair, k in zip(pairs, kept)]) for end in (0, 1))
+    whole = _total(worth_keeping)
     if not whole:
         return LUMA
     best: tuple[float, Weights] | None = None
@@ -72,9 +79,7 @@ def chosen_mix(colours: Picture, pixels_per_pt: float) -> Weights:
                 continue
             mix = (r / 10, g / 10, b / 10)
             grey = mix[0] * red + mix[1] * green + mix[2] * blue
-            share = 0
-            for (one, other), w, k in zip(pairs, wanted, kept):
-                share += _total(np.minimum(np.abs(grey[one] - grey[other])[k], w))
+            share = _mixing.kept(grey.ravel(), one, other, worth_keeping, float(_WHOLE))
             clipped = int(((grey < 0) | (grey > 1)).sum()) / grey.size
             worth = share / whole + _LIGHT * _total(np.clip(grey, 0, 1)) / (_WHOLE * grey.size) - clipped
             worth -= _FAR * (abs(mix[0] - LUMA[0]) + abs(mix[1] - LUMA[1]) + abs(mix[2] - LUMA[2]))

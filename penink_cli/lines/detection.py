@@ -93,20 +93,21 @@ def detect_lines(
     fine = oriented.responses(even, *FINE, threads)
     found: list[_Line] = []
     if black:
-        strong = blurred(oriented.strongest(fine, 1.0, threads)[0], 16.0, threads)
+        most = oriented.strongest(fine, 1.0, threads)
+        strong = blurred(most[0], 16.0, threads)
         things = spots(picture, threads)
         inside, about = (covered(things, picture.shape, margin) for margin in BESIDE_SPOT)
-        strokes = _lines(_traced(fine, 1.0, HIGH, tone, cos2, sin2, threads), shortest)
+        strokes = _lines(_traced(fine, 1.0, HIGH, tone, cos2, sin2, threads, most, last=not white), shortest)
         strokes = [line for line in strokes if not _within(line.points, inside)]
         half, tone2, cos, sin = (halved(part, threads) for part in (even, tone, cos2, sin2))
         coarse = oriented.responses(half, *COARSE, threads)
-        broad = _lines(_traced(coarse, 1.0, HIGH, tone2, cos, sin, threads).doubled(), 2 * shortest)
+        broad = _lines(_traced(coarse, 1.0, HIGH, tone2, cos, sin, threads, last=True).doubled(), 2 * shortest)
         near = _near([line.points for line in strokes if line.rank >= FAR_RANK], picture.shape)
         found += strokes
         found += [line for line in broad if _far(line.points, near) and not _within(line.points, about)]
         found += [_spot_line(spot, strong) for spot in things]
     if white:
-        light = _traced(fine, -1.0, WHITE_HIGH, 1 - tone, cos2, sin2, threads)
+        light = _traced(fine, -1.0, WHITE_HIGH, 1 - tone, cos2, sin2, threads, last=True)
         lit = _lines(light, shortest)
         found += [line.made_white() for line, ridge in zip(lit, _ridges(lit, picture)) if ridge >= RIDGE]
     found = [line for line in found if line.rank >= LEAST_RANK and not _at_rim(line, picture.shape)]
@@ -176,14 +177,16 @@ def field(picture: Picture, threads: int) -> tuple[Picture, Picture]:
 
 
 def _traced(
-    bank: oriented.Bank, sign: float, high: float, ground: Picture, cos2: Picture, sin2: Picture, threads: int
-) -> Traces:
-    """Lines of one sign in a bank."""
-    most, mean = oriented.strongest(bank, sign, threads)
+    bank: oriented.Bank, sign: float, high: float, ground: Picture, cos2: Picture, sin2: Picture, threads: int,
+    strongest: tuple[Picture, Picture] | None = None, last: bool = False,
+) -> Traces:  # fmt: skip
+    """Lines of one sign in a bank. strongest: its strongest responses, if known. last: the bank is not needed again."""
+    most, mean = strongest or oriented.strongest(bank, sign, threads)
     # a dot answers in every direction, a line in few
     factor = np.clip((1 - mean / (most + np.float32(1e-6))) / np.float32(0.35), 0, 1).astype(np.float32)
     around = np.maximum(blurred(most, 16.0, threads) - blurred(most, 4.0, threads) / np.float32(32), np.float32(0))
-    answers = oriented.weighed(bank, sign, factor, np.float32(2 * INHIBITION) * around, threads)
+    less = np.float32(2 * INHIBITION) * around
+    answers = oriented.weighed(bank, sign, factor, less, threads, bank if last else None)
     return tracing.traces(answers, high, high * LOW / HIGH, around, ground, cos2, sin2)
 
 

@@ -89,9 +89,9 @@ def strongest(bank: Bank, sign: float, threads: int) -> tuple[Picture, Picture]:
     return most, mean
 
 
-def weighed(bank: Bank, sign: float, factor: Picture, less: Picture, threads: int) -> Bank:
-    """Responses of this sign × factor (h, w) − less (h, w), or 0."""
-    out = np.empty_like(bank)
+def weighed(bank: Bank, sign: float, factor: Picture, less: Picture, threads: int, into: Bank | None = None) -> Bank:
+    """Responses of this sign × factor (h, w) − less (h, w), or 0. into: room for them, the bank itself maybe."""
+    out = np.empty_like(bank) if into is None else into
     h = bank.shape[1]
     work = threading.ranges(lambda top, bottom: oriented.weighed(bank, sign, factor, less, out, top, bottom), h, _BAND)
     threading.share(work, threads)

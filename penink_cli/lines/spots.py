@@ -54,7 +54,8 @@ class Spot:
 
 def spots(picture: Picture, threads: int) -> list[Spot]:
     """Dark spots of a picture (h, w), those of the highest contrast first; none overlaps another."""
-    blurs = [blurred(picture, FINEST * float(exact.power(RATIO, k)), threads) for k in range(SCALES + 1)]
+    wider = [float(exact.power(RATIO, k)) for k in range(SCALES + 1)]
+    blurs = [blurred(picture, FINEST * times, threads) for times in wider]
     steps = [wide - narrow for narrow, wide in pairwise(blurs)]
     candidates: list[tuple[float, int, int, int]] = []
     for k, step in enumerate(steps):
@@ -64,8 +65,7 @@ def spots(picture: Picture, threads: int) -> list[Spot]:
     taken = np.zeros(picture.shape, np.bool_)
     found = []
     for _, k, i, j in candidates[:MOST]:
-        radius = FITS * FINEST * float(exact.power(RATIO, k))
-        if not taken[i, j] and (spot := _spot(picture, blurs[0], taken, i, j, radius)):
+        if not taken[i, j] and (spot := _spot(picture, blurs[0], taken, i, j, FITS * FINEST * wider[k])):
             found.append(spot)
     return found
 

@@ -16,13 +16,31 @@ def shrink(stored[:, :, ::1] values, float scale, float[:, :, ::1] out, Py_ssize
     """Rows top … bottom of out (h, w, channels): the means of values (H, W, channels) over each pixel, times scale."""
     cdef Py_ssize_t rows = values.shape[0], columns = values.shape[1], channels = values.shape[2]
     cdef Py_ssize_t h = out.shape[0], w = out.shape[1], long_row = columns * channels
-    cdef Py_ssize_t y, x, r, c, k, first, last
+    cdef Py_ssize_t y, x, r, c, k, q, first, last
     cdef double down = <double>rows / h, across = <double>columns / w, low, high
     cdef float part, total, area = <float>(scale / (down * across))
     cdef float *sums = <float *>malloc(long_row * sizeof(float))
-    if sums == NULL:
+    # of each pixel of a row: the first of its columns, and where their parts begin, which are the same in all rows
+    cdef Py_ssize_t *begin = <Py_ssize_t *>malloc((2 * w + 1) * sizeof(Py_ssize_t))
+    cdef float *parts = <float *>malloc((columns + 2 * w) * sizeof(float))
+    cdef Py_ssize_t *column = begin + w + 1
+    if sums == NULL or begin == NULL or parts == NULL:
+        free(sums)
+        free(begin)
+        free(parts)
         raise MemoryError
     with nogil:
+        q = 0
+        for x in range(w):
+            low, high = x * across, (x + 1) * across
+            first, last = <Py_ssize_t>low, min(<Py_ssize_t>high, columns - 1)
+            column[x], begin[x] = first, q
+            for k in range(first, last + 1):
+                part = <float>(min(high, k + 1.0) - max(low, <double>k))
+                if part > 0:  # nothing of the last one may be in it
+                    parts[q] = part
+                    q += 1
+        begin[w] = q
         for y in range(top, bottom):
             low, high = y * down, (y + 1) * down
             first, last = <Py_ssize_t>low, min(<Py_ssize_t>high, rows - 1)
@@ -34,16 +52,16 @@ def shrink(stored[:, :, ::1] values, float scale, float[:, :, ::1] out, Py_ssize
                     for k in range(long_row):
                         sums[k] += part * <float>(&values[r, 0, 0])[k]
             for x in range(w):
-                low, high = x * across, (x + 1) * across
-                first, last = <Py_ssize_t>low, min(<Py_ssize_t>high, columns - 1)
                 for c in range(channels):
                     total = 0
-                    for k in range(first, last + 1):
-                        part = <float>(min(high, k + 1.0) - max(low, <double>k))
-                        if part > 0:
-                            total += part * sums[k * channels + c]
+                    k = column[x] * channels + c
+                    for q in range(begin[x], begin[x + 1]):
+                        total += parts[q] * sums[k]
+                        k += channels
                     out[y, x, c] = total * area
     free(sums)
+    free(begin)
+    free(parts)
 
 
 cdef inline Py_ssize_t within(Py_ssize_t i, Py_ssize_t n) noexcept nogil:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -129,21 +130,22 @@ class Strokes:
         even, some = self.taken(~swells), self.taken(swells)
         counts = np.diff(some.first) // 3
         within = np.arange(int(counts.sum())) - np.repeat(np.cumsum(counts) - counts, counts)
-        control = some.points[(np.repeat(some.first[:-1], counts) + 3 * within)[:, None] + np.arange(4)]
+        segment = np.repeat(some.first[:-1], counts) + 3 * within
         knot = np.repeat(some.knots[:-1], counts) + within
         begin, end = some.at_knots[knot], some.at_knots[knot + 1]
         n = np.maximum(np.ceil(np.abs(end - begin) / step), 1).astype(np.int64)
         which = np.repeat(np.arange(len(n)), n)
         k = np.arange(len(which)) - np.repeat(np.cumsum(n) - n, n)
         u, v = (k / n[which])[:, None], ((k + 1) / n[which])[:, None]
+        control = [some.points[segment[which] + i] for i in range(4)]
 
-        def at(*places: Floats) -> Floats:  # the polar form
-            p = control[which]
-            for t in places:
-                p = p[:, :-1] + (p[:, 1:] - p[:, :-1]) * t[:, :, None]
-            return np.asarray(p[:, 0])
+        def nearer(places: list[Floats], t: Floats) -> list[Floats]:  # de Casteljau's step; together the polar form
+            return [a + (b - a) * t for a, b in pairwise(places)]
 
-        points = np.stack([at(u, u, u), at(u, u, v), at(u, v, v), at(v, v, v)], axis=1).reshape(-1, 2)
+        from_u, from_v = nearer(control, u), nearer(control, v)
+        uu, uv, vv = nearer(from_u, u), nearer(from_u, v), nearer(from_v, v)
+        four = [*nearer(uu, u), *nearer(uu, v), *nearer(uv, v), *nearer(vv, v)]
+        points = np.stack(four, axis=1).reshape(-1, 2)
         widths = begin[which] + (end - begin)[which] * (k + 0.5) / n[which]
         pieces = replace(some, points=points, first=4 * np.arange(len(which) + 1), widths=widths, knot_widths=None)
         return Strokes.joined([replace(even, knot_widths=None), pieces])
