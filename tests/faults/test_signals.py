@@ -82,6 +82,44 @@ def test_ctrl_c_while_it_still_imports():
     assert (done.returncode, done.stderr) == (-signal.SIGTERM, b"")
 
 
+def test_stopped_between_the_last_byte_and_the_rename(tmp_path):
+    """The temporary file is gone already and the process not yet dead: it says nothing of a file that is missing."""
+    script = """if True:
+        import os, signal, sys, threading, penink_cli.__main__ as m
+        from penink_cli.ground.streams import signals, temporary
+
+        class Guard:
+            lock, removed, waits = threading.Lock(), threading.Event(), threading.Event()
+            def acquire(self):
+                self.lock.acquire()
+            def __enter__(self):
+                if self.removed.is_set():
+                    self.waits.set()
+                self.lock.acquire()
+            def __exit__(self, *_):
+                self.lock.release()
+
+        def dying(number, die=signals.die_of):
+            guard.removed.set()
+            guard.waits.wait()
+            die(number)
+
+        temporary._guard = guard = Guard()
+        signals.die_of = dying
+        m.streams.install_signals()
+        with m.streams.writing(sys.argv[1]) as out:
+            out.write(b"new")
+            os.kill(os.getpid(), signal.SIGTERM)
+            guard.removed.wait()
+    """
+    out = tmp_path / "out"
+    out.write_bytes(b"old")
+    command = [sys.executable, "-c", script, str(out)]
+    done = subprocess.run(command, env=environment(), capture_output=True, check=False)
+    assert (done.returncode, done.stderr) == (-signal.SIGTERM, b"")
+    assert out.read_bytes() == b"old" and os.listdir(tmp_path) == ["out"]
+
+
 def test_a_signal_that_the_caller_ignores_is_ignored(server, inputs, tmp_path):
     """As under nohup, or for a job in the background of a script."""
     for number in (signal.SIGINT, signal.SIGHUP):

@@ -16,7 +16,9 @@ import threading
 # A short name of their own: a name made from the target's could be longer than the file system allows.
 _NAME = re.compile(r"\.penink-[0-9a-f]{16}\.tmp", re.ASCII)
 
-_guard = threading.Lock()  # held while a temporary file comes into being, and for ever once a signal has come
+# Held while a temporary file comes into being or is renamed, and for ever once a signal has come: whoever waits for it
+# then dies of the signal, and does not complain of a file that is gone.
+_guard = threading.Lock()
 _temporaries: set[str] = set()
 
 
@@ -40,8 +42,9 @@ def create(directory: str) -> tuple[str, int]:
 
 def rename(path: str, target: str) -> None:
     """Let a temporary file take the place of its target."""
-    os.replace(path, target)
-    _temporaries.discard(path)
+    with _guard:
+        os.replace(path, target)
+        _temporaries.discard(path)
 
 
 def remove(path: str) -> None:
