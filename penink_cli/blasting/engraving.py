@@ -47,7 +47,7 @@ CHUNK = 1 << 16
 KNOT_PT = 2.0
 #: Free ends taper to this width over so many points, or a share of a short stroke, but the less the darker it is from
 #: this width on, in parts of the lines' distance: among dark lines a point leaves a speck of white.
-TIP_PT, TAPER_PT, TAPER_SHARE, BLUNT = 0.05, 6.0, 0.4, 0.6
+TIP_PT, TAPER_PT, TAPER_SHARE, BLUNT = 0.05, 6.0, 0.4, 0.25
 #: Where a line goes on after a gap, points are no longer than so many times the gap.
 TAPER_GAP = 1.2
 #: Lines shorter than this are left out.
