@@ -74,7 +74,7 @@ class Tracks:
     """Middle lines in samples about a point apart, cut where strokes must end.
 
     points: (p, 2). first: (n + 1,). step: (n,) distance of samples. bounded: (n, 2) whether an end is at an edge or
-    the frame. rim: (n,) whether it is a line along the frame. across: (p,) what a device adds to a line's width there,
+    the frame, or a ring's. rim: (n,) whether it is a line along the frame. across: (p,) what a device adds to a line's width there,
     points. ahead: (p, 2) directions. level, apart: (p,) see `levels` and `distances` in `taking_turns`. asked: (p, 2)
     where the tone is read. room: (p,) how wide a line may be that does not reach over an edge.
     """
@@ -187,6 +187,7 @@ def _tracks(
     pen_lines.smooth(lines, np.full(len(lines.points), max(spacing, 3.0)))
     if field is not None and engraving.along:
         lines = _evened_out(lines, spacing)
+    pen_lines.turn_rings(lines, seed)
     return _cut(sheet, lines, borders, spacing, engraving.finest_pt, rim)
 
 
@@ -299,7 +300,9 @@ def _cut(
     points = _along(along, lines.first[curve][which], at, lines.first[curve + 1][which] - 1)
     first = curves.starts(steps + 1)
     tracks = _measured(sheet, borders, points, first, spacing)
-    tracks.bounded[:, 0], tracks.bounded[:, 1] = bounded & 1, bounded & 2
+    # a ring goes on where it began
+    ring, last = lines.ring[curve], np.diff(lines.first)[curve] - 1
+    tracks.bounded[:, 0], tracks.bounded[:, 1] = bounded & 1 | ring & (start <= 0), bounded & 2 | ring & (end >= last)
     normals = np.column_stack([-tracks.ahead[:, 1], tracks.ahead[:, 0]])
     finest = (finest_pt + tracks.across) / spacing
     light = 1 - np.clip(_at_points(sheet, sheet.tone.astype(np.float64), tracks.asked) / finest / 2, 0.0, 1.0)

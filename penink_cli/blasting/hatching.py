@@ -13,13 +13,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
 
 from penink_cli.blasting import candidates, curves, thin, walls
-from penink_cli.blasting.curve_fitting import fit
+from penink_cli.blasting.curve_fitting import over_chords
 from penink_cli.blasting.form import Form
 from penink_cli.blasting.shares import ALONE, shares
 from penink_cli.blasting.sheet import Cells, Sheet
@@ -161,21 +160,11 @@ def hatch_sheet(
 
 
 def in_fewer_cubics(strokes: Strokes) -> Strokes:
-    """The same strokes, those of several cubics fitted anew: what trimming has left often needs but one."""
-    counts = np.diff(strokes.first)
-    long = np.flatnonzero(counts > 4)
-    if not len(long):
-        return strokes
-    several = strokes.taken(counts > 4)
-    pieces = curves.pieces_of(several.points, several.first, REFIT_STEP_PT)
-    lines = curves.sample(several.points, several.first, pieces)
-    parts = [strokes.points[a:b] for a, b in pairwise(strokes.first.tolist())]
-    for i, a, b in zip(long.tolist(), lines.first[:-1].tolist(), lines.first[1:].tolist()):
-        control = fit(lines.points[a:b], REFIT_PT)
-        if len(control) < len(parts[i]):
-            parts[i] = control
-    first = curves.starts(np.array([len(part) for part in parts]))
-    return replace(strokes, points=np.concatenate(parts), first=first)
+    """The same strokes fitted anew: what trimming has left often needs but one cubic, and that of few numbers."""
+    pieces = curves.pieces_of(strokes.points, strokes.first, REFIT_STEP_PT)
+    lines = curves.sample(strokes.points, strokes.first, pieces)
+    points, first = over_chords(lines.points, lines.first, REFIT_PT)
+    return replace(strokes, points=points, first=first)
 
 
 def layer_shares(

@@ -5,6 +5,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from penink_cli.blasting import curves
+from penink_cli.blasting.curve_fitting import over_chords
 
 
 def chain(rng, segments):
@@ -58,3 +59,26 @@ def test_dots_stay_dots():
     assert np.diff(lines.first).tolist() == [1, 4, 1]
     cut, begin = curves.cut(points, first, pieces, np.array([2, 0]), np.zeros(2), np.zeros(2))
     assert cut.tolist() == [[5, 5], [1, 2]] and begin.tolist() == [0, 1, 2]
+
+
+def test_cubics_over_chords_pass_their_points_in_few_numbers():
+    rng = np.random.default_rng(3)
+    runs = [np.array([[4.0, 5.0]]), np.array([[0.0, 0.0], [3.0, 1.0]])]
+    for radius in (6.0, 30.0, 200.0):
+        t = np.linspace(0, 60 / radius, 40)
+        turn = rng.uniform(0, 6)
+        runs.append(radius * np.column_stack([np.cos(t + turn), np.sin(t + turn)]) + rng.uniform(-0.05, 0.05, (40, 2)))
+    points, first = np.concatenate(runs), curves.starts(np.array([len(run) for run in runs]))
+    control, begin = over_chords(points, first, 0.15)
+    few = curves.segments_of(begin)
+    assert few[0] == 0 and few[1] == 1 and few[4] <= 2 < few[2] <= 14
+    lines = curves.sample(control, begin, np.full(few.sum(), 600))
+    for i, run in enumerate(runs):
+        drawn = lines.points[lines.first[i] : lines.first[i + 1]]
+        assert (drawn[0] == run[0]).all() and np.allclose(drawn[-1], run[-1])
+        assert np.hypot(*(run[:, None] - drawn[None]).T).min(axis=0).max() < 0.15 + 0.02
+        each = control[begin[i] : begin[i + 1]]
+        for k in range(0, len(each) - 1, 3):
+            chord = each[k + 3] - each[k]
+            thirds = (each[k + 1 : k + 3] - each[k]) @ chord / (chord @ chord)
+            assert np.allclose(thirds, [1 / 3, 2 / 3])

@@ -183,3 +183,88 @@ cdef void nearer(
         moved = t[k] - (product / slope if fabs(slope) > 1e-12 else 0.0)
         highest = max(highest, min(1.0, max(0.0, moved)))
         t[k] = highest
+
+
+cdef bint over_chord(
+    const double[:, ::1] points, Py_ssize_t first, Py_ssize_t last, double tolerance, double* p, double* q
+) noexcept nogil:
+    """Whether a cubic over the chord of points first … last passes all of them within tolerance.
+
+    Its control points are at a third and two thirds of the chord, so far (p, q) to the left of it: the curve is the
+    graph of a polynomial, and how far a point is off is looked at across the chord.
+    """
+    cdef Py_ssize_t k
+    cdef double dx = points[last, 0] - points[first, 0], dy = points[last, 1] - points[first, 1]
+    cdef double length = sqrt(dx * dx + dy * dy)
+    cdef double along, aside, b1, b2, x, y, determinant
+    cdef double before = 0.0, c11 = 0.0, c12 = 0.0, c22 = 0.0, y1 = 0.0, y2 = 0.0
+    p[0] = q[0] = 0.0
+    if last - first < 2:
+        return True
+    if length < 1e-6:
+        return False
+    for k in range(first + 1, last):
+        x, y = points[k, 0] - points[first, 0], points[k, 1] - points[first, 1]
+        along, aside = (x * dx + y * dy) / (length * length), (y * dx - x * dy) / length
+        if along <= before or along >= 1.0:
+            return False
+        before = along
+        b1, b2 = 3 * (1 - along) * (1 - along) * along, 3 * (1 - along) * along * along
+        c11 += b1 * b1
+        c12 += b1 * b2
+        c22 += b2 * b2
+        y1 += b1 * aside
+        y2 += b2 * aside
+    determinant = c11 * c22 - c12 * c12
+    if last - first > 2 and determinant > 1e-9 * c11 * c22:
+        p[0], q[0] = (y1 * c22 - y2 * c12) / determinant, (c11 * y2 - c12 * y1) / determinant
+    else:
+        p[0] = q[0] = (y1 + y2) / (c11 + 2 * c12 + c22)
+    # no steeper than half a right angle at the ends
+    if max(fabs(p[0]), fabs(q[0])) > length / 3:
+        return False
+    for k in range(first + 1, last):
+        x, y = points[k, 0] - points[first, 0], points[k, 1] - points[first, 1]
+        along, aside = (x * dx + y * dy) / (length * length), (y * dx - x * dy) / length
+        b1, b2 = 3 * (1 - along) * (1 - along) * along, 3 * (1 - along) * along * along
+        if fabs(b1 * p[0] + b2 * q[0] - aside) > tolerance:
+            return False
+    return True
+
+
+def over_chords(
+    const double[:, ::1] points, const long long[::1] first, double tolerance, double[:, ::1] control,
+    long long[::1] count,
+):
+    """Runs of points (n, 2), where each begins in first, as few cubics over chords (see `over_chord`).
+
+    control: (3 n, 2), one after the other; count: (runs,) of its rows that each run fills.
+    """
+    cdef Py_ssize_t i, a, b, last, low, high, used = 0
+    cdef double p, q, dx, dy, length
+    with nogil:
+        for i in range(first.shape[0] - 1):
+            a, last = first[i], first[i + 1] - 1
+            count[i] = -used
+            control[used, 0], control[used, 1] = points[a, 0], points[a, 1]
+            used += 1
+            while a < last:
+                # as far as one serves, by halves: what serves so far mostly serves up to there
+                low, high, b = a + 1, last, last
+                while low < high:
+                    if over_chord(points, a, b, tolerance, &p, &q):
+                        low = b
+                    else:
+                        high = b - 1
+                    b = (low + high + 1) // 2
+                over_chord(points, a, low, tolerance, &p, &q)
+                dx, dy = points[low, 0] - points[a, 0], points[low, 1] - points[a, 1]
+                length = max(sqrt(dx * dx + dy * dy), 1e-12)
+                control[used, 0] = points[a, 0] + dx / 3 - p * dy / length
+                control[used, 1] = points[a, 1] + dy / 3 + p * dx / length
+                control[used + 1, 0] = points[low, 0] - dx / 3 - q * dy / length
+                control[used + 1, 1] = points[low, 1] - dy / 3 + q * dx / length
+                control[used + 2, 0], control[used + 2, 1] = points[low, 0], points[low, 1]
+                used += 3
+                a = low
+            count[i] += used
