@@ -1,4 +1,4 @@
-"""Curves through runs of points, within a tolerance: smooth ones (Schneider, Graphics Gems 1990), and ones of few numbers.
+"""Curves through points, within a tolerance: smooth ones (Schneider, Graphics Gems 1990), and ones of few numbers.
 
 This module alone imports the compiled kernel.
 """
@@ -27,8 +27,8 @@ def fit(points: Floats, tolerance: float, ring: bool = False) -> Floats:
 def over_chords(points: Floats, first: Ints, tolerance: float) -> tuple[Floats, Ints]:
     """Control points of runs of points (n, 2), each within tolerance, in few cubics; and where each run's begin.
 
-    The control points lie beside a third and two thirds of each cubic's chord, so that two numbers say where: PostScript
-    is written so. Joints are not quite smooth, by no more than is seen within the tolerance.
+    They lie beside a third and two thirds of each cubic's chord, so that two numbers say where: PostScript is written
+    so. Joints are not quite smooth, by no more than is seen within the tolerance.
     """
     control, count = np.empty((3 * len(points), 2)), np.empty(len(first) - 1, np.int64)
     _curve_fitting.over_chords(np.ascontiguousarray(points), np.ascontiguousarray(first), tolerance, control, count)

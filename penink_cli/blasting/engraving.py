@@ -74,9 +74,10 @@ class Tracks:
     """Middle lines in samples about a point apart, cut where strokes must end.
 
     points: (p, 2). first: (n + 1,). step: (n,) distance of samples. bounded: (n, 2) whether an end is at an edge or
-    the frame, or a ring's. rim: (n,) whether it is a line along the frame. across: (p,) what a device adds to a line's width there,
-    points. ahead: (p, 2) directions. level, apart: (p,) see `levels` and `distances` in `taking_turns`. asked: (p, 2)
-    where the tone is read. room: (p,) how wide a line may be that does not reach over an edge.
+    the frame, or a ring's. rim: (n, 3) how wide a line along a border is where it is dark, from and to which tone it
+    becomes so; nought for other lines. across: (p,) what a device adds to a line's width there, points. ahead: (p, 2)
+    directions. level, apart: (p,) see `levels` and `distances` in `taking_turns`. asked: (p, 2) where the tone is
+    read. room: (p,) how wide a line may be that does not reach over an edge.
     """
 
     points: Floats
