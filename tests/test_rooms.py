@@ -103,3 +103,31 @@ def test_rooms_know_no_strangers(library: str) -> None:
 def test_compiled_imports_are_seen() -> None:
     text = "from penink_cli.blasting.sheet cimport x\n"
     assert list(_cython("x.pyx", text)) == [("x.pyx", "penink_cli.blasting.sheet.x", 1)]
+
+
+ROOMS = sorted(path.parent for path in HOUSE.rglob("__init__.py") if path.parent != HOUSE)
+
+
+@pytest.mark.parametrize("room", ROOMS, ids=lambda room: str(room.relative_to(HOUSE)))
+def test_a_room_s_first_page_names_what_is_in_it(room: Path) -> None:
+    """Whoever comes in finds each module in the docstring of `__init__`, except where one table names them all."""
+    page = ast.get_docstring(ast.parse((room / "__init__.py").read_text("utf-8"))) or ""
+    assert page
+    if room.name in ("_compiled", "commands", "kinds", "rules"):
+        return
+    modules = {path.stem for path in room.glob("*.py")} | {path.parent.name for path in room.glob("*/__init__.py")}
+    unnamed = {name for name in modules if not name.startswith("_") and not re.search(rf"\b{name}\b", page)}
+    assert not unnamed, f"a line about each in {room}/__init__.py: {', '.join(sorted(unnamed))}"
+
+
+def test_the_map_leads_to_what_is_there() -> None:
+    """Paths of the map, from the house or from a room that is named before in the same part."""
+    for guide in (HOUSE / "README.md", ROOT / ".github" / "CONTRIBUTING.md"):
+        lost = []
+        for part in guide.read_text("utf-8").split("\n## "):
+            rooms = [HOUSE, ROOT, *(HOUSE / room for room in FLOOR if re.search(rf"\b{room}\b", part))]
+            places = [*rooms, *(room / "_compiled" for room in rooms)]
+            for name in re.findall(r"`([\w./*-]+\.(?:pyx|pxd|py|md|json)|\w+/)`", part):
+                if "NAME" not in name and not any(any(place.glob(name)) for place in places):
+                    lost.append(name)
+        assert not lost, f"{guide}: {', '.join(lost)}"

@@ -1,18 +1,25 @@
 """The paper's section 3: a grey image and a stroke texture to pen strokes of the same tone.
 
-    blast.blast             what is to be drawn as a Task, for a rule of rules/
-    task.Begun              the sheet with what is on it already
-      marks                 small dark things on bare paper, filled first
-    rules/
-      hatching.hatch_sheet  textures of layers: a closed loop on the tone
-        shares              what each layer owes
-        sweep, candidates   straight lines; or along a field
-        form                  phase → level_lines → pen_lines
-        sheet.place         trimmed to the runs that help (placing.pyx); walls cut them
-        fine strokes, sheet.press
-      stroke_set            example strokes bent along a field
-      engraving             lines whose width is the tone
-      tile                  textures of strokes by priority; the paper's own rule
-      threshold             what a picture that draws itself does; screens is its table
-    outlines                strokes along edges
+blast.blast             what is to be drawn as a task.Task, for a rule of rules/
+  task.Begun              the sheet.Sheet with what is on it already
+    telling                 telling lines: no second stroke along a dark one, none across a white one
+    marks                   small dark things on bare paper, filled first
+rules/                  best, or what --rule says
+  solids                what is darker than hatching can be, filled
+  hatching.hatch_sheet  textures of layers: a closed loop on the tone
+    thin                    a stroke along each thin dark thing
+    shares                  what each layer owes
+    sweep                   straight lines; or along a field:
+    form                      phase → level_lines → pen_lines
+    candidates              either as strokes that walls have cut (walls.cut)
+    sheet.place             trimmed to the runs that help (_compiled/placing); low_pass: what the eye sees
+  stroke_set            example strokes bent along a field
+  engraving             lines whose width is the tone; taking_turns: which go on where it is light; rims: along borders
+  tile                  textures of strokes by priority, the paper's own rule; scaling: those that grow with the picture
+  pressure              the hand's, at last
+  threshold             what a picture that draws itself does; screens is its table, constants its numbers
+outlines                strokes along edges
+
+For all of these curves cuts and samples Béziers, and curve_fitting makes them. reach says which tones a texture can
+make, pens gives it finer ones for small prints.
 """

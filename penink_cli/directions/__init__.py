@@ -1,8 +1,8 @@
 """The directions that strokes follow: a line field found in a photograph, and read at any size.
 
-    detection.detect_directions
-      evidence.tangents   what the photo's tones say, place by place, and how much it counts
-      polylines           the user's strokes and telling lines as evidence
-      solving.solved      the smooth field that this leaves, its links cut at edges, its knots calmed
-    reading.at_size       the field as large as the grey at hand, by the same reconstruction
+detection.detect_directions
+  evidence.tangents   what the photo's tones say, place by place, and how much it counts
+  polylines           the user's strokes and telling lines as evidence
+  solving.solved      the smooth field that this leaves, its links cut at edges, its knots calmed
+reading.at_size       the field as large as the grey at hand, by the same reconstruction
 """

@@ -1,1 +1,10 @@
-"""Arrangements of discontinuity edges as geometry: validity, trails, triangulation, regions, sides, quantisation."""
+"""Arrangements of discontinuity edges as geometry. All is decided exactly; ties by `_compiled/predicates`.
+
+validity.check         edges that meet only at shared vertices; a sweep
+trails                 edges as few long trails, for who writes or draws them
+edge_index             the edges near a place
+triangulation          constrained Delaunay, of meshers; the regions that edges enclose, walking
+  regions                those around a point
+quantisation           vertices on a coarse grid, the arrangement unbroken
+  sides                  and each sample on its side
+"""

@@ -1,9 +1,9 @@
 """Telling lines: found in a photograph, ranked, chosen for a size on paper, and drawn.
 
-    detection.detect_lines
-      oriented.responses   a bank of filters in 24 directions, fine and coarse
-      tracing.traces       lines followed, each on its own direction's layer
-      spots                small round dark things
-    choice                 which there is room for at a size
-    strokes                those as swelling strokes
+detection.detect_lines
+  oriented.responses   a bank of filters in 24 directions, fine and coarse
+  tracing.traces       lines followed, each on its own direction's layer
+  spots                small round dark things
+choice                 which there is room for at a size
+strokes                those as swelling strokes
 """

@@ -1,1 +1,10 @@
-"""What subcommands share: options and the types of their values, files read for them, a progress bar."""
+"""What subcommands share. Only this room, `main`, `chain` and `commands` know click.
+
+common      options that many have, and the types of their values
+inputs      what subcommands read, checked, the file named in errors
+textures    a texture by its name or file; styles: a style; inks: inks and plates
+layers      strokes files as layers; paper, colour, order, pens
+sheet       sizes on paper that cannot be meant
+progress    a bar on a terminal
+watching    doing a thing again when a file changes
+"""

@@ -1,1 +1,11 @@
-"""Strokes to pictures: PostScript, SVG, PDF, pixels, and the page that they lie on."""
+"""Strokes to pictures. `registry.OUTPUTS` is the table of them; each module below it has a `write`.
+
+page             where the sheet lies on the paper
+postscript       EPS, or a page for a printer
+svg              with penwork: strokes shared out among a plotter's pens
+pdf
+  swelling         the outlines of strokes that swell, where only shapes can be filled
+  words            lists of numbers as text
+raster/          pixels; inks: their colour where several inks lie over one another
+edge_picture     edges over their photo, to be looked at; direction_picture: a field
+"""

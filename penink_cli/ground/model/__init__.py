@@ -5,6 +5,13 @@ One coordinate decision holds everywhere: x right, y down, the origin at the top
 (j, i), and its sample sits at (j + ½, i + ½). Only modules that speak to something
 with another convention (scikit-image's integer centres, PostScript's y up) convert.
 
+images        GreyImage, ColourImage
+edges         EdgeList; lines: Lines and which are drawn; directions: Directions
+strokes       Strokes, with its verbs: joined, taken, rounded, by_segments
+textures      Texture and what it may be besides a tile: HatchLayer, Engraving, Scales
+illustration  Illustration, its Layers
+arrays        what all are made of
+
 Nothing here knows of files, options or algorithms.
 """
 

@@ -1,1 +1,5 @@
-"""Strokes as pixels: how much of each pixel ink covers, and the files that hold such pictures."""
+"""Strokes as pixels.
+
+cover    how much of each pixel ink covers, in bands from the top
+png      the file that holds them
+"""
