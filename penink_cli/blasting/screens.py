@@ -263,7 +263,7 @@ def once_more(screen: Screen, low: float) -> Screen:
 def widening(cubics: Floats) -> float:
     """Mean of |cos| + |sin| over the directions of cubics (s, 4, 2), by length; of dots, that of all directions.
 
-    >>> float(widening(np.array([[(0, 0), (1, 1), (2, 2), (3, 3)]])).round(6))
+    >>> round(widening(np.array([[(0, 0), (1, 1), (2, 2), (3, 3)]], float)), 6)
     1.414214
     """
     steps = np.diff(cubics.reshape(-1, 4, 2), axis=1)
