@@ -1,6 +1,12 @@
 # cython: boundscheck=False, wraparound=False, cdivision=True
 """Compiled: segments on a fine integer grid that never touch but at shared vertices.
 
+    ┌─────┬─────┬─────┐     A segment is entered in each cell of a uniform grid that it runs through. `fits` looks at
+    │     │   ──┼── b │     the segments of these cells alone: a–b fits where none of them meets it but at a or b.
+    ├─────┼──╱──┼─────┤
+    │ a ──┼─    │     │
+    └─────┴─────┴─────┘
+
 Coordinates are whole multiples of `arrangement.planar.UNIT`, so every predicate is exact in 64 bits
 (a frame of 2²⁴ units squares to 2⁴⁸). All changes go through `fits`, which is why an
 arrangement built here is one by construction.
@@ -26,7 +32,9 @@ cdef class Planar:
     """Segments between vertices, found again by the cells of a uniform grid they run through.
 
     vertices: (n, 2) int64 units, shared with the caller, who may move a vertex that no live segment uses.
-    ends: (m, 2) int32 vertex numbers of each segment; a segment is live between `add` and `remove`.
+    ends: (m, 2) int32 vertex numbers of each segment; a segment is live between `add` and `remove`. live: (m,) whether.
+    head: (rows, columns) the first entry of each cell, −1 for none. entry: (k, 2) a segment, and the cell's next entry
+    or the next free one. ignored: (m,) the stamp that says that `fits` is to pass a segment over. cell: units a side.
     """
 
     def __init__(

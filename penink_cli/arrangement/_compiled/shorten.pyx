@@ -1,5 +1,13 @@
 # cython: boundscheck=False, wraparound=False, cdivision=True
-"""Compiled: an arrangement's paths as few long segments. See simplification.py."""
+"""Compiled: an arrangement's paths as few long segments. See simplification.py.
+
+            m                  A run of a path from a to b becomes the segment a–b where no vertex lies farther
+         ·  ·  ·               from that than the tolerance, and where no other segment is in its way. Else it is
+      ·           ·            divided at m, the vertex farthest away, and both parts are tried.
+    a ─ ─ ─ ─ ─ ─ ─ ─ b
+
+Coordinates are whole units of the grid (`arrangement.planar.UNIT`).
+"""
 
 from libc.math cimport floor, sqrt
 from penink_cli.arrangement._compiled.planar cimport Planar

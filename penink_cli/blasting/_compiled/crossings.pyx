@@ -1,5 +1,11 @@
 # cython: boundscheck=False, wraparound=False, cdivision=True
-"""Compiled loop: where polylines cross walls. Only `walls` imports this module."""
+"""Compiled loop: where polylines cross walls. Only `walls` imports this module.
+
+           wall               A polyline of points 0, 1, 2 … crosses at the place 1.4: four tenths of the way from
+            ╲                 point 1 to point 2. The sine is that of the angle α between the two.
+    0 ─── 1 ─╳α── 2 ─── 3
+              ╲
+"""
 
 from libc.math cimport fabs, sqrt
 

@@ -1,6 +1,15 @@
 # cython: boundscheck=False, wraparound=False, cdivision=True
 """Compiled loops that try strokes out one after the other and draw of each what is worth drawing.
 
+    tone still due     ▁▂▅▇▇▆▂▁▁▁▃▆▇▇▅▂▁
+    the candidate      ─────────────────    a polyline in pieces of about a cell
+    what is drawn        ──────   ───────   the runs of pieces that gain most
+
+**Where a line ends**: a piece gains what its ink takes from the squared error of the tone that the eye sees, and loses
+where the error grows. Each run costs a fixed amount besides, and has a least length. A dynamic programme over two
+states, pen up and pen down, chooses the runs of the largest sum (`Trial.runs`). Walls have cut the candidate before;
+a run that ends at a wall may be shorter.
+
 Lengths are in subpixels, ink in cells (see `ink`). Only `sheet` imports this module.
 """
 
@@ -136,8 +145,7 @@ cdef class Trial:
                 ink = 0.0
 
     cdef Py_ssize_t gains(self, Target target) noexcept nogil:
-        """Fill in ink, due and own of each piece; returns their number. A dot is one piece.
-        """
+        """Fill in ink, due and own of each piece; returns their number. A dot is one piece."""
         cdef Py_ssize_t i, j, x, y
         cdef double dx, dy, mx, my, d, tone
         cdef double[:, ::1] points = self.lines.points

@@ -1,9 +1,13 @@
 # cython: boundscheck=False, wraparound=False, cdivision=True
 """Compiled loops of the sweep: lines laid as far apart as a density asks, then evened out.
 
-Coordinates are those of a grid of `phase[column, row]`: columns run along the hatch, rows
-across it, and phase is how many lines have passed from the first row to this one. The next
-line of a column is due where its phase reaches the column's count. See `sweep`.
+    0.0   0.0   0.0        A column of numbers here is a column of the grid, dark on the right, and the numbers are its
+    0.4   0.5   1.0        phase: how many lines have passed from the first row to this one. The first line runs where
+    0.8   1.0   2.0        phase is 1, from the left below to the right above; where it is 2 the next one. So lines are
+    1.2   1.5   3.0        as close as the tone asks.
+
+Columns run along the hatch, rows across it: `phase[column, row]`. The next line of a column is due where its phase
+reaches the column's count. See `sweep`.
 
 Only `sweep` imports this module.
 """

@@ -1,8 +1,10 @@
 # cython: boundscheck=False, wraparound=False, cdivision=True
 """Compiled loop: ink of strokes that swell, on a sheet of bits. Only `sheet` imports this module. Units as in `ink`.
 
-Each segment is a quadrangle whose corners lie to both sides of its knots, where the next one begins; a stroke's ends
-are discs.
+    ·───────·
+    k0      k1─────·        Each segment is a quadrangle whose corners lie to both sides of its knots, half the
+    ·───────·      k2       width away, where the next one begins; a stroke's ends are discs.
+             ╲─────·
 """
 
 from libc.math cimport fabs, sqrt

@@ -64,7 +64,20 @@ cdef void span(double ax, double ay, double bx, double by, int row, double* left
 cdef class Scene:
     """Edges in sample units, bucketed by unit cell; the nodes, and the arcs between them up to `reach` long.
 
-    A new one holds the edges alone: `cells.sort_edges` and then `nodes.find` fill in the rest.
+    A new one holds the edges alone: `cells.sort_edges` and then `nodes.find` fill in the rest. Lists by groups lie one
+    group after the other in one array: group i is list[start[i] : start[i + 1]].
+
+    width, height: samples. vx, vy: (n_vertices,) positions. ea, eb: (n_edges,) the vertices of each edge.
+    gw, gh: cells of the grid, a sample spacing wide; the first and the last are half ones along the border.
+    cell_start, cell_edge: the edges that touch each cell. most: edges in the fullest cell.
+    crowded: (gh · gw,) the first cell of the cell's own fine grid, −1 where it has none; n_crowded: how many have one.
+    fine_start, fine_edge: the edges that touch each cell of the fine grids, FINE × FINE cells a grid.
+    star_start, star: the other ends of the edges at each vertex.
+    node_vertex, node_low, node_high: (n_nodes,) a node's vertex and those at the ends of its sector (see `nodes`).
+    node_across: blocks in a row of blocks. node_start, node_sorted: the nodes in each block of 2^BLOCK cells a side;
+    node_x, node_y: their places, in that order.
+    arc_start, arc_to, arc_length: the nodes that each node sees, and how far away they are.
+    arrays: keeps alive what the pointers point into.
     """
 
     def __init__(self, vertices, edges, int width, int height, double reach):

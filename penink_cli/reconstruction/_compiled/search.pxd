@@ -5,6 +5,7 @@ from penink_cli.reconstruction._compiled.views cimport Views
 
 
 @cython.final
+# What the members hold is said in search.pyx.
 cdef class Finder:
     cdef readonly Scene scene
     cdef int row0, row1

@@ -1,5 +1,16 @@
 # cython: boundscheck=False, wraparound=False, cdivision=True
-"""Shortest unobstructed paths by a bounded Dijkstra over the path graph, and equation 4 at single points."""
+"""Shortest unobstructed paths by a bounded Dijkstra over the path graph, and equation 4 at single points.
+
+            ╱ q        Double lines are edges; u and w are nodes at their ends (see `nodes`).
+    ══════ w           1. `first_bends`: the nodes that the query p sees, here u, with their distances.
+          ╱            2. `spread`: Dijkstra from those over the arcs between nodes, here to w, within a reach.
+         u ══════      3. `last_leg`: of the nodes reached and seen from the query q, the one that makes the whole way
+        ╱                 shortest.
+       p
+
+The detour is the length of p–u–w–q less the distance of q from p. All lengths are in sample spacings. From a sample
+the first bends are remembered, as many pixels ask for them (`bends_of`).
+"""
 
 from libc.math cimport fabs, sqrt
 from libc.stdlib cimport free
@@ -16,7 +27,14 @@ cdef class Finder:
     """Shortest paths in one scene for one thread, with the bends next to each sample remembered.
 
     row0, row1: the rows of samples to remember bends for. closed: remember for each sample every node that can be the
-    last bend on a path of length `reach` from it, else only those it sees.
+    last bend on a path of length `reach` from it, else only those it sees. looks: the `views` say which these are.
+    start, count: (rows · width,) of each sample, where its bends begin in the pool, and how many there are; a count
+    of −1 says that nobody has asked yet. pool_node, pool_length: (pool_size,) the bends, nearest first, and the length
+    of the path to each.
+    distance, stamp: (nodes,) of the search at hand the length of the path to each node, where the stamp is `now`.
+    heap_node, heap_key: (heap_size,) the nodes to be looked at, as a binary heap by the length of the path.
+    done: (nodes,) the n_done nodes that were reached, nearest first. from_x, from_y: where the search began.
+    alpha: (alpha_size,) what `attenuate` fills in.
     """
 
     def __init__(self, Scene scene, int row0, int row1, double reach, bint closed):

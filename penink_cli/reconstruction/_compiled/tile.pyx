@@ -1,5 +1,12 @@
 # cython: boundscheck=False, wraparound=False, cdivision=True
-"""What the output pixels of one tile see: up to 8 × 8 of them, in one cell, which share the same 4 × 4 samples."""
+"""What the output pixels of one tile see: up to 8 × 8 of them, in one cell, which share the same 4 × 4 samples.
+
+    s ·────────── a ───────      The pixels (░) that an edge a–b hides from a sample s lie beyond the edge's line and
+        ╲         │ ░ ░ ░        between the lines from s through a and through b: of three masks the first is
+            ╲     │ ░ ░ ░        turned to the side where s is not, and the other two differ.
+                ╲ b ░ ░ ░
+                    ╲ ░ ░
+"""
 
 from libc.stdlib cimport free
 from libc.string cimport memset
