@@ -137,7 +137,7 @@ def _gaussian(sigma: float) -> Floats:
 
 
 def _band(grey: npt.NDArray[np.floating], sigma: float, low: float, top: int) -> tuple[Ints32, Floats]:
-    """Pixels and values, as of `_points.locate` and `surround`, of the rows from top on."""
+    """Pixels and values, as of `points.locate` and `surround`, of the rows from top on."""
     halo = int(4 * sigma + 0.5) + 4 + SURROUND_PX
     first, last = max(0, top - halo), min(len(grey), top + _BAND_ROWS + halo)
     band = np.ascontiguousarray(grey[first:last], np.float32)

@@ -1,13 +1,17 @@
 """Corners and junctions put where the picture shows them: what the edges would look like against the photo.
 
-Blur rounds corners, and near junctions the gradient belongs to two edges at once, so that chains end
-there in bevels, stubs and bends. Each such place is looked at through a window: the edges part it into
-regions, which are rendered with the greys that suit best, through the photo's own blur (`_window`). The
-vertices settle where this is most like the photo; a short edge may shrink to a point, an open end may meet what is
-near, a vertex or an edge be left out or added (`_settling`); and of all these the arrangement stays that explains
-the photo with fewest vertices (`_view`). In texture regions are not flat, and the number of vertices counts less.
+Blur rounds corners. Near junctions the gradient belongs to two edges at once, so that chains end there in bevels,
+stubs and bends. Each such place is looked at through a window:
 
-Places that are told by a common edge wait for one another in order, others are settled by several threads.
+1. The edges part the window into regions. These are rendered, each in the grey that suits it best, through the photo's
+   own blur (`_compiled/window`).
+2. The vertices move to where the rendering is most like the photo.
+3. Other arrangements are tried: a short edge shrinks to a point, an open end meets what is near, a vertex or an edge is
+   left out or added (`_compiled/settling`).
+4. The one that explains the photo with fewest vertices stays (`_compiled/view`). In texture, where regions are not
+   flat, the number of vertices counts less.
+
+Places that share an edge are settled one after the other in a fixed order, others by several threads.
 """
 
 from __future__ import annotations

@@ -12,13 +12,14 @@ from penink_cli.blasting import curves, sweep, walls
 from penink_cli.blasting.sheet import SIGMA_PT, Cells, Sheet
 from penink_cli.ground.model import Floats, HatchLayer, Ints, Strokes
 
-#: Strokes are sampled at about this distance.
+#: The distance, about, at which curves are sampled, points.
 STEP_PT = 1.5
-#: Candidates of a layer are tried in so many batches.
+#: Batches in which a layer's candidates are tried; see `Sheet.place`.
 BATCHES = 4
-#: Strokes along the frame are no shorter, and there are so many rows of them at the most.
+#: Strokes along the frame: their least length, points, and how many rows of them there are at the most.
 SHORTEST_RIM_PT, RIM_ROWS = 6.0, 3
-#: A shorter piece is made one with the stroke that goes on from it, unless the hand would have to step further aside.
+#: A piece shorter than STUB_PT is joined to the stroke that goes on from it, unless the two lie further apart across
+#: their direction than STEP_ASIDE_PT.
 STUB_PT, STEP_ASIDE_PT = 20.0, 0.9
 
 
@@ -42,7 +43,7 @@ class Candidates:
         """The runs of candidates that were drawn, as strokes (of a sheet of no size)."""
         start, end = runs[:, 1].astype(np.float64), runs[:, 2].astype(np.float64)
         points, first = curves.cut(self.points, self.first, self.pieces, runs[:, 0], start, end)
-        # a stroke moved sideways may have left the frame by as much
+        # A stroke that was moved sideways may have left the frame.
         points = np.clip(points + np.repeat(moved, np.diff(first), axis=0), self.box[:2], self.box[2:])
         return Strokes(0.0, 0.0, points, first, self.widths[runs[:, 0]])
 
@@ -71,7 +72,7 @@ def between_walls(
     extra = (slack[:, 0] * count, slack[:, 1] * count)
     parts = walls.cut(borders, lines, np.full(n, painted), extra)
     points, first = curves.cut(points, first, pieces, parts.curve, parts.start, parts.end)
-    # where another stroke goes on, a short piece is no stub
+    # Where another stroke goes on, a short piece is no stub.
     goes_on = joined[parts.curve] & np.column_stack([parts.start <= 1e-6, parts.end >= count[parts.curve] - 1e-6])
     bounded = (parts.bounded | goes_on[:, 0] | (goes_on[:, 1].astype(np.uint8) << 1)).astype(np.uint8)
     goes_on[:-1, 1] &= goes_on[1:, 0] & (np.diff(parts.curve) == 1)
@@ -87,13 +88,13 @@ def between_walls(
 
 
 def without_stubs(points: Floats, first: Ints, joint: npt.NDArray[np.bool_]) -> tuple[Floats, Ints, Ints]:
-    """Curves made one with the next where either is a stub.
+    """Curves joined to the next one where either is a stub.
 
-    joint: (n - 1,) whether curve i + 1 goes on where curve i ends. Returns points and first of what is left, and which
-    of the curves each begins with.
+    joint: (n - 1,) whether curve i + 1 goes on where curve i ends. Returns points and first of the curves that result,
+    and for each the number of the curve that it begins with.
 
-    The sweep cuts its lines into strokes without a look at the edges, and edges and the frame cut those again: without
-    this a quarter of the ink of coins is in strokes under 20 points, with it a tenth.
+    The sweep cuts its lines into strokes without regard to edges; edges and the frame then cut these strokes again.
+    Without this step a quarter of the ink of coins is in strokes under 20 points, with it a tenth.
     """
     start, end = points[first[:-1]], points[first[1:] - 1]
     chord = end - start

@@ -1,9 +1,9 @@
 """Chains of cubic Béziers: cutting them at parameters and sampling them, many at a time.
 
-The curves of a set lie one after the other, `points` and `first` as in `model.Strokes`:
+The curves of a set lie one after the other, `points` and `first` as in `ground.model.Strokes`:
 curve i owns points[first[i] : first[i + 1]], 3k + 1 of them, or one for a dot.
 
-This module alone imports the compiled kernel `_curves`.
+This module alone imports the compiled kernel `curves`.
 """
 
 from __future__ import annotations

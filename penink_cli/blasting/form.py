@@ -20,33 +20,36 @@ from penink_cli.ground.angles import direction
 from penink_cli.ground.device import MEAN
 from penink_cli.ground.model import Floats, HatchLayer, Ints
 
-#: Lengths of strokes, points: they look shorter where they bend, and many end sooner because their line does.
+#: Least and greatest length of a stroke, points. A bent stroke looks shorter than a straight one, and many strokes end
+#: early because their line does; so these are more than those of the straight sweep.
 STROKE_PT = (38.0, 82.0)
-#: Cells that lines are laid beyond the frame.
+#: How many cells beyond the frame lines are laid.
 PAD = 12
-#: Where a layer covers less than this, its lines run on as dense as they are around, at least so many a point: lines
-#: whose density falls to nothing would turn aside there.
+#: Where a layer covers less than FAINT, its lines are as dense as within AROUND_PT points, and at least SPARSEST lines
+#: a point: lines whose density fell to nothing would turn aside there.
 FAINT, SPARSEST = 0.08, 0.05
 AROUND_PT = 9.0
-#: A layer is active where it covers more than this: only there does it fill gaps.
+#: The coverage from which on a layer is active: only there does it fill gaps.
 ACTIVE = 0.04
-#: Lines begin and end where the layer covers so much, a different tone for each: else their ends draw a contour.
+#: A line begins and ends where the layer's coverage passes a threshold between these, drawn for each line by itself:
+#: one threshold for all would have the ends draw a contour.
 RAGGED = (0.004, 0.03)
-#: Short strokes: how long they are, how far apart the places tried, and the cosine of the most that they turn in a
-#: quarter of their length.
+#: Short strokes: least and greatest length, points; distance of the places tried, points; the cosine of the greatest
+#: angle that they turn in a quarter of their length.
 FILLER_PT, FILLER_STEP_PT, STRAIGHT_ON = (10.0, 18.0), 2.0, 0.8
-#: Places at which each stroke looks at what lies under it.
+#: Places along each stroke at which the sheet is looked up.
 SAMPLES = 5
-#: The hand's variation: of a stroke's place, and its bow at the most, in parts of the distance of its lines. Less than
-#: on straight lines, for these are not quite as even without it.
+#: The hand's variation in parts of the distance of the lines: of a stroke's place, and its greatest bow. It is less
+#: than on straight lines, because lines along a field are less even to begin with.
 WAVER, BOW = 0.06, 0.14
 
 
 @dataclass(frozen=True, eq=False)
 class Laid:
-    """What the lines of one layer were made of: lines a point at each node, and the phase there.
+    """What the lines of one layer were made of.
 
-    active: (rows, columns) in which of the sheet's cells the layer covers anything worth speaking of.
+    density: lines a point at each node. phase: turns there. active: (rows, columns) the cells of the sheet in which the
+    layer covers more than `ACTIVE`.
     """
 
     density: Plane
@@ -65,7 +68,6 @@ class DrawnStrokes:
     samples: Floats
 
 
-#: None.
 NO_STROKES = DrawnStrokes(
     np.zeros((0, 2)), np.zeros(1, np.int64), np.zeros((0, 2), bool), np.zeros((0, 2)), np.zeros((0, 2))
 )
@@ -77,9 +79,9 @@ class Form:
     cos2, sin2: (rows, columns) of the sheet's cells, cosine and sine of twice the angle at which strokes run.
     """
 
-    #: Fine strokes are no shorter.
+    #: The least length of a fine stroke, points.
     fine_shortest_pt = 20.5
-    #: Short strokes fill what is too light by this.
+    #: By how much of tone the eye must see a place too light for short strokes to fill it.
     filler_seen = 0.15
 
     def __init__(self, sheet: Sheet, cos2: Cells, sin2: Cells, layers: tuple[HatchLayer, ...], borders: walls.Walls):
@@ -97,7 +99,7 @@ class Form:
         layer = self.layers[i]
         c, s = (np.float32(part) for part in direction(2.0 * turn_of(self.layers, i)))
         if layer.wave_pt > 0:
-            # as steep as a wave so high and long is where it is steepest, one way or the other
+            # the greatest slope of a wave of that height and length, times noise from -1 to 1
             slope = np.float32(4 * layer.wave_pt / layer.wave_length_pt) * self._noise(layer.wave_length_pt / 2)
             length = 1 + slope * slope
             wave_c, wave_s = (1 - slope * slope) / length, 2 * slope / length

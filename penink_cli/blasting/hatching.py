@@ -1,12 +1,14 @@
-"""Hatching a sheet in layers: sweep, trim, feed the error back; then fine strokes, and the pressure of the hand.
+"""Hatching a sheet in layers. **The loop on the tone closes here.**
 
-The sweep lays lines as far apart as the tone asks (`sweep`). Each is trimmed to the runs that bring the ink nearer to
-the tone. What is wrong then goes into the tone asked for, and all is done again, three times over; the best is kept.
-What is still too light is filled with fine strokes between the lines, and at last each stroke is pressed a little more
-or less.
+1. Lines are laid as far apart as the tone asks: straight ones (`sweep`), or along a field (`form`).
+2. Each is trimmed to the runs that bring the ink nearer to the tone (`Sheet.place`).
+3. The error that is left, as the eye sees it, is added to the tone asked for. The first `SWEEPS` rounds go back to 1,
+   the later ones to 2. The best round is kept.
+4. What is still too light is filled with fine strokes between the lines.
+5. Each stroke is pressed a little more or less (`press`).
 
-No stroke is settled before the last round: the rounds are judged by the whole sheet, and a stroke's pressure answers
-to its neighbours on all sides. So strokes are handed out when all of them are done.
+Strokes are handed out when all of them are done: each round is judged by the whole sheet, and a stroke's pressure
+depends on its neighbours on all sides.
 """
 
 from __future__ import annotations
@@ -26,48 +28,46 @@ from penink_cli.blasting.stroke_set import StrokeSet
 from penink_cli.ground.device import MEAN
 from penink_cli.ground.model import EdgeList, Floats, HatchLayer, Strokes
 
-#: What a run of ink must gain, in cells × tone: less, and it is not worth a stroke.
+#: The gain, in cells × tone, below which a run of ink is not drawn.
 RUN_COST = 0.25
-#: This part of the tone is taken to be due besides: where the sweep laid a stroke is right on the whole, and the noise
-#: of what lies around it is no reason to cut it.
+#: This part of the tone counts as due besides, so that noise around a well-placed stroke does not cut it.
 LENIENCE = 0.1
-#: Where it is lighter, less of the error is fed back: a single line is too dark where it is and too light beside it.
+#: Below this tone less of the error is fed back: there a single line is too dark where it is and too light beside it.
 SINGLE = 0.06
-#: Rounds: the first ones lay the lines anew, the later ones only trim.
+#: Rounds of the loop. The first SWEEPS lay the lines anew, the others only trim them.
 SWEEPS, ROUNDS = 2, 3
-#: Where less than this is bare, what is due is no reason for lines.
+#: The least bare part of a cell for which a layer's density is reckoned: ink that covers nearly all asks for no lines.
 BARE = 0.05
-#: A set of strokes is laid once: laid anew it is no truer and takes as long again.
+#: SWEEPS for a set of strokes: laid again it is no truer, and takes as long again.
 SET_SWEEPS = 1
-#: How much of the error the next sweep's density takes up.
+#: The part of the error that the next sweep's density takes up.
 SWEEP_GAIN = 0.4
-#: Along a field no more of an error than this is fed back at a time: lines that must end there cannot make it up.
+#: Along a field the most of an error that is fed back at a time: where lines must end, more of them cannot mend it.
 MOST_FED_BACK = np.float32(0.15)
-#: Along a field a layer that crosses another begins only where as much of the surroundings is dark, seen so many times
-#: over by the eye, or a place is so much darker than where it begins: small dark things are told better by the lines
-#: that run along them, closing up, than by a patch of crossed ones with a ragged border.
+#: Along a field a layer that crosses another begins only where the surroundings, low-passed WIDER times, are as dark
+#: too, or where the place itself is darker by BY_ITSELF. Lines that close up show small dark things better than a patch
+#: of crossed lines with a ragged border does.
 WIDER, BY_ITSELF = 2, 0.25
-#: And over so much tone.
+#: The range of tone over which such a layer comes in.
 FEATHER = 0.1
-#: Fine strokes: their width in parts of the pen's, and in dots of the device at the least; their length in points.
+#: Fine strokes: their width in parts of the pen's, the least in dots of the device, and their length, points.
 FINE, FINE_DOTS, FINE_PT = 0.5, 1.5, 44.0
-#: They must pass a place where so many times as much is due as they add themselves, and count their own ink so many
-#: times: better a little too light than doubled lines.
+#: A fine stroke must pass a place where FINE_LEAST times its own ink is due, and counts its own ink FINE_CAUTION times:
+#: a little too light is better than doubled lines.
 FINE_LEAST, FINE_CAUTION = 0.4, 1.6
-#: And the eye must see the place too light by this.
+#: By how much of tone the eye must see the place too light.
 FINE_SEEN = 0.015
-#: What a fine stroke must gain, and its least length.
+#: The gain below which a fine stroke is not drawn, cells × tone, and its least length, points.
 FINE_COST, FINE_SHORTEST_PT = 0.02, 20.5
-#: Along a field short strokes fill what is too light; they must gain so much, they count their own ink so many
-#: times and are no shorter than this.
+#: The same of the short strokes that fill what is too light along a field, and how many times they count their own ink.
 FILLER_COST, FILLER_CAUTION, FILLER_SHORTEST_PT = 0.05, 1.3, 4.0
-#: Along the frame strokes are drawn where it is darker, and count their own ink so many times.
+#: Along the frame strokes are drawn where the tone is above this; how many times they count their own ink.
 RIM_TONE, RIM_CAUTION = 0.85, 4.0
-#: Strokes along a field are fitted anew within this, at points so far apart.
+#: Strokes along a field are fitted anew: the tolerance, and the distance of the points fitted to, points.
 REFIT_PT, REFIT_STEP_PT = 0.15, 2.0
-#: Rows of fine strokes that are tried, and the moves sideways, in rows, that look for the middle of a gap.
+#: The distance of the rows of fine strokes tried, points, and the moves across, in rows, that find the middle of a gap.
 FINE_ROW_PT, FINE_MOVES = 1.5, (-0.33, 0.33, 0.0)
-#: How far a hand's pressure widens or narrows a stroke, and in how many rounds that is found.
+#: The part by which pressure widens or narrows a stroke at the most, and the rounds in which that is found.
 PRESSURE, PRESSES = 0.22, 3
 
 
@@ -89,7 +89,7 @@ def hatch_sheet(
     directions: cosine and sine of twice the angle (rows, columns) along which strokes run, each layer turned from it;
         None for the layers' own angles.
     told: for each cell, whether a telling line is drawn there: thin things are not drawn again.
-    examples: a set of strokes that are laid along the directions, in place of lines; the layers are its `passes`.
+    examples: strokes of a set, laid along the directions in place of lines; the layers are `stroke_set.passes`.
     """
     borders = walls.build(edges, sheet, max(pen_pt or layer.pen_pt for layer in layers))
     pens = [pen_pt or layer.pen_pt for layer in layers]
@@ -111,7 +111,7 @@ def hatch_sheet(
     for turn in range(ROUNDS):
         tick()
         if turn < (SWEEPS if examples is None else SET_SWEEPS):
-            laid = []  # those of the round before are no longer needed
+            laid = []  # frees those of the round before
             smooth = (sheet.low_pass(density) if turn else wide) / sheet.weight - there
             smooth = np.maximum(smooth, 0) / np.maximum(1 - there, np.float32(BARE))
             covers = layer_shares(sheet, smooth, density, layers, form is not None and examples is None)

@@ -1,6 +1,6 @@
 """A Gaussian low-pass that stops at strong steps of a guide, as what is due and what the eye sees are reckoned with.
 
-This module alone imports the compiled kernel `_due` for it.
+This module alone imports the compiled kernel `due` for it.
 """
 
 from __future__ import annotations

@@ -60,7 +60,7 @@ class Screen:
 
     angle: of the u axis in degrees, from x towards y (clockwise on paper).
     width, height: of the tile, points.
-    points, first: control points (p, 2) in points and where each stroke begins, as in `model.Strokes`.
+    points, first: control points (p, 2) in points and where each stroke begins, as in `Strokes`.
     enters: (s,) tone above which each stroke is drawn.
     covers, fresh: (k,) the strokes that enter until the screen by itself covers covers[i], in ascending order, add
         fresh[i] square points of ink for each point of their length: the more there is, the more they overlap.

@@ -6,35 +6,36 @@ import numpy as np
 
 from penink_cli.ground.model import Floats, HatchLayer
 
-#: Where a layer sets in, the one before it gives way by this part of what it has brought, and so the new one begins
-#: with lines near enough to each other to be seen as a layer; by this much more tone it has come back.
+#: Where a layer sets in, the layer before it gives way by GIVES_WAY of what it has brought. So the new layer begins
+#: with lines close enough to be seen as a layer. BACK_AFTER of tone later the layer before is back.
 GIVES_WAY, BACK_AFTER = 0.2, 0.35
-#: Where black begins, the lines of the first layer close up until they overlap by so much; what is not quite black is
-#: then left out, stroke by stroke. Layers that cross each other in the dark are a grainy net instead.
+#: Where black begins, the first layer's lines close up to this coverage, so that they overlap; strokes where it is not
+#: quite black are then left out one by one. Layers that cross in the dark would be a grainy net.
 BLACK = 1.4
-#: How much darker than where black begins a place must be to be black amid what is not.
+#: How much darker than the onset of black a place must be to be black amid surroundings that are not.
 BLACKER = 0.03
-#: Over so many cells on either side the first layer closes up, and the others go on into the black.
+#: The cells to either side of black's border over which the first layer closes up and the others go on into the black.
 CLOSES_UP = 3
-#: So much darker than where the next layer sets in, a place has it for itself; less, and what lies around it must be
-#: as dark.
+#: A place that is darker than a layer's onset by this has the layer by itself; else its surroundings must pass the
+#: onset too.
 ALONE = 0.1
 
 
 def shares(
     tone: Floats, around: Floats, layers: tuple[HatchLayer, ...], alone: float = ALONE, feather: float = 0.0
 ) -> list[Floats]:
-    """How much each layer is to cover (same shape as tone), so that crossing at random they make the tone.
+    """How much each layer is to cover (same shape as tone), so that layers that cross at random make the tone.
 
-    around: (same shape) the mean tone of the surroundings; a layer is not begun for a spot that has room for a stroke
-    or two of it, unless that is darker than where the layer begins by more than `alone`.
+    tone: ink coverage 0 … 1. around: (same shape) the mean tone of the surroundings; a spot with room for a stroke or
+    two begins no layer, unless it is darker than the layer's onset by more than `alone`.
 
-    feather: over so much tone the new layer begins, so that its lines start here and there and not along one border.
+    feather: the range of tone over which a new layer comes in, so that its lines do not all start along one border.
 
-    A last layer whose `high` is 1 is black: where it begins the first layer goes on alone, and covers all there is.
+    A last layer whose `high` is 1 is black: where it begins, the first layer goes on alone and covers everything.
 
-    A layer takes up the tone until the next one sets in. Were it just to stop there, the first lines of the next would
-    be stray strokes over an even hatch; an illustrator opens the hatch a little as he begins to cross it.
+    A layer takes up the tone until the next one sets in, and gives way a little there, as an illustrator opens the
+    hatch where he begins to cross it. Otherwise the first lines of the next layer would be stray strokes over an even
+    hatch.
     """
     if len(layers) > 1 and layers[-1].high >= 1.0:
         begin = layers[-1].low

@@ -13,7 +13,7 @@ look-up a sample.
 A device paints every pixel that a stroke touches. It thereby widens a stroke of direction
 θ by (|cos θ| + |sin θ|) of its pixels; `gain_pt` is the size of that pixel, 0 for none.
 
-This module alone imports the compiled kernels `_ink`, `_placing`, `_press` and `_swelling`.
+This module alone imports the compiled kernels `ink`, `placing`, `press` and `swelling`.
 """
 
 from __future__ import annotations

@@ -9,7 +9,7 @@ too, and cuts it into strokes of a hand's length, whose ends keep clear of the e
 before. Then every stroke is moved to the middle between its neighbours, a few times over, and at
 last the hand's own variation is added.
 
-This module alone imports the compiled kernel `_sweep`.
+This module alone imports the compiled kernel `sweep`.
 """
 
 from __future__ import annotations
@@ -28,34 +28,35 @@ from penink_cli.ground.model import Floats, HatchLayer, Ints
 
 COLUMN_PT = 2.0  # along the hatch
 ROW_PT = 1.0  # across it
-#: How far the hatch is laid beyond the frame: at the border lines are as dense as elsewhere.
+#: How far beyond the frame the hatch is laid, so that lines are as dense at the border as elsewhere.
 PAD_PT = 24.0
+#: The least length of a run, and the least and greatest length of a stroke, points.
 SHORTEST_PT = 7.0
 STROKE_PT = (34.0, 72.0)
-#: Strokes that end for no reason of their own are laid this much longer, to reach an edge if there is one.
+#: A stroke that the hand ends, and neither tone nor wall, is laid this much longer, to reach a wall if there is one.
 SLACK_PT = 4.0
 #: Distance of the knots of a wandering stroke.
 KNOT_PT = 9.0
-#: How far strokes are turned from their layer's direction (tangents): hardly, while they are laid, and by two degrees
-#: to even them out. Were they laid so, they would lean where the tone changes, all of them until they can no more, and
-#: end in a row where two such fields meet: then nine ends in ten on a dark gradient stand in rows, now one in five.
+#: The greatest turn of a stroke from its layer's direction (tangents): while it is laid, and while strokes are evened
+#: out (two degrees). Laying with the second would let all strokes lean where the tone changes, and end in rows where
+#: two such fields meet: on a dark gradient nine ends in ten stand in rows then, and one in five so.
 STEEPEST, RELAXED = 0.003, 0.035
-#: How much of a line's deviation from where it was due the next line keeps. Less than all, so that the
-#: density stays true; but the less, the longer a mismatch of neighbouring columns lives on as a seam.
+#: The part of a line's deviation from its due place that the next line keeps. Below 1 the density stays true; the less
+#: it is, the longer a mismatch of neighbouring columns lives on as a seam.
 MEMORY = 0.9
-#: How far, in spacings, chance moves the next line: without it a flat field is a ruled lattice.
+#: How far, in spacings, chance moves the next line. Without it a flat field is a ruled lattice.
 DRIFT = 0.12
-#: How much of a mismatch of phase between a run and what lies beyond its end is mended with each line, and over what
+#: The part of a mismatch of phase, between a run and what lies beyond its end, that each line mends, and over what
 #: length.
 HEAL, HEAL_PT = 0.3, 60.0
+#: Rounds in which strokes are moved to the middle between their neighbours.
 ROUNDS = 8
-#: A layer that covers less than this is drawn with a lighter hand, down to the finest line where it covers nothing:
-#: lines of the full pen would be so far apart there that the eye sees each of them, and at 2 % they would be off by
-#: 1.6 % RMS, fine ones by 0.8.
+#: Below this coverage a layer's lines are finer, down to the finest line at none. Lines of the full pen would be so far
+#: apart there that the eye sees each of them: at 2 % the tone is off by 1.6 % RMS with the pen, by 0.8 with fine lines.
 LIGHT = 0.1
-#: Degrees that lines keep from the diagonal, see `heading`.
+#: The least angle between lines and the diagonal, degrees; see `heading`.
 OFF_DIAGONAL = 1.5
-#: The hand's variation: of a stroke's place in parts of the spacing, of its bow in points.
+#: The hand's variation: of a stroke's place in parts of the spacing, of its bow, points.
 WAVER = 0.07
 BOW_PT = 0.3
 
@@ -64,7 +65,7 @@ BOW_PT = 0.3
 class Hatch:
     """Strokes of one layer: straight lines with a bow, or wandering ones, over the frame and a little beyond it.
 
-    points, first: control points of all of them, as in `model.Strokes`. joined: (n, 2) whether another stroke goes
+    points, first: control points of all of them, as in `Strokes`. joined: (n, 2) whether another stroke goes
         on from its start, its end.
     slack: (n, 2) which part of its length, at its start and at its end, is there only to reach an edge.
     widths: (n,) points.

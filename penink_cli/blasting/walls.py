@@ -1,6 +1,6 @@
 """Where strokes must end: strong discontinuity edges, and the frame.
 
-This module alone imports the compiled kernel `_crossings`.
+This module alone imports the compiled kernel `crossings`.
 """
 
 from __future__ import annotations
@@ -17,16 +17,17 @@ from penink_cli.geometry import edge_index
 from penink_cli.ground.model import EdgeList, Floats, Ints
 
 CELL_PT = 6.0
-#: Steps of tone at which an edge is a wall, and at which it is one if it goes on from a wall: those over which ink is
-#: not credited, so that a stroke across a lesser one is no mistake. Cutting strokes at every weak edge leaves stubble
-#: between edges that run side by side: at 0.18 astronaut had 80 % of its ink in long strokes, now it has 83.
+#: The step of tone from which on an edge is a wall, and the one that does where the edge continues a wall. Across a
+#: lesser step ink is credited to both sides (`sheet.STEP`), so a stroke may cross it. Cutting strokes at weak edges
+#: leaves stubble between edges side by side: with 0.18 astronaut has 80 % of its ink in long strokes, with 0.35 it has
+#: 83.
 STRONG, WEAK = 0.35, STEP
-#: Edges that hang together are a wall if they are longer than this: what is smaller than the strokes themselves is
-#: shaped by trimming these to its tone, cut at its outline it is all stubs.
+#: The least length, points, of edges that hang together for them to be a wall. Strokes are trimmed to the tone of what
+#: is smaller than they are; cut at its outline they would all be stubs.
 SHORTEST_WALL_PT = 40.0
-#: The tone of an edge's side is looked up so far from it, points.
+#: How far from an edge the tone of its sides is looked up, points.
 BESIDE_PT = 1.4
-#: Pieces between walls that are shorter are not drawn.
+#: The least length of a piece between walls, points; shorter ones are dropped.
 SHORTEST_PT = 0.8
 
 

@@ -1,7 +1,7 @@
 """Samples, directions and texts in as few bytes as they can be: members of a packed illustration.
 
 Each begins with four bytes that say what it is, then whole numbers (seven bits a byte, low ones
-first, the eighth set on all but the last), then one stretch of the adaptive code of `_compact`:
+first, the eighth set on all but the last), then one stretch of the adaptive code of `_compiled/compact`:
 
 =========  =========================================  ==========================================
 ``PIs1``   width, height, maxval                      samples, row by row, by their neighbours

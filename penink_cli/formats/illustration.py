@@ -308,7 +308,7 @@ def rounded(illustration: Illustration) -> Illustration:
     """What `read` gives back of what `members` writes: samples at their levels, edges and numbers as written.
 
     An illustration is worked with in this form only, so that one read from loose files and one
-    unpacked draw the same strokes. Its edges must lie on the grid (`arrangement.quantisation`).
+    unpacked draw the same strokes. Its edges must lie on the grid (`geometry.quantisation`).
     """
     layers = []
     for layer in illustration.layers:

@@ -43,7 +43,7 @@ def sample_units(points: Floats, width: int, height: int, frame: tuple[float, fl
 class Paths:
     """The edges of an image of width × height samples, made ready for questions of visibility and distance.
 
-    The edges must be an arrangement (`arrangement.validity.check`). Points are in sample units throughout.
+    The edges must be an arrangement (`geometry.validity.check`). Points are in sample units throughout.
     A point asked about stands for p + (ε, ε²): it is on neither edge nor vertex, whatever its coordinates.
 
     limit: no path longer than this will be asked for.
@@ -66,7 +66,7 @@ class Paths:
         return self.scene.n_edges == 0
 
     def finder(self, *, closed: bool = False, rows: tuple[int, int] | None = None) -> _search.Finder:
-        """A search for one thread; see `_search.Finder`."""
+        """A search for one thread; see `search.Finder`."""
         first, last = rows or (0, self.height)
         return _search.Finder(self.scene, first, last, self.limit, closed)
 

@@ -16,7 +16,7 @@ from penink_cli.reconstruction.kernels import Taps, taps
 from penink_cli.reconstruction.lattice import centres
 
 Window = tuple[int, int, int, int]
-EIGHT = 8  # columns of room beyond the last: see `_separable.expand`
+EIGHT = 8  # columns of room beyond the last: see `separable.expand`
 
 
 def _axis(count: int, half: int, begin: int, size: int) -> Taps:

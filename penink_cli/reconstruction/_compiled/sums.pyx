@@ -185,7 +185,7 @@ cdef inline void keep(Lanes* like, void* values, int n, stored* out) noexcept no
 cdef inline void paint(
     Lanes* like, Scratch scratch, int samples, int nx, int ny, stored* out, Py_ssize_t stride
 ) noexcept nogil:
-    """Reconstruct a tile, some samples of which `cover` or `fade` have attenuated; the others count fully."""
+    """Reconstruct a tile, some samples of which `fades` has attenuated; the others count fully."""
     cdef int r, s, k
     cdef Lanes half, zero, most
     cdef Lanes[32] values, top, bottom
