@@ -17,9 +17,9 @@ NOISE = 0.006
 SIZE = 96
 _LINES = 2.0  # the weight of a telling line that crosses a cell
 _STROKES = 6.0  # … and of the user's own
-_BESIDE = 2.5  # σ, samples, of what the user's strokes outvoice
-_PEAK = 0.16  # of a line one sample wide, blurred by that
-_PULL, _LEAST = 0.1, 0.003  # of the hatch's own angle, half followed and wholly
+_BESIDE = 2.5  # σ, samples: how far around the user's strokes the photo does not count
+_PEAK = 0.16  # the greatest value of a line one sample wide that a Gaussian of that σ has blurred
+_PULL, _LEAST = 0.1, 0.003  # the weight of the hatch's own angle, where the form is followed by half and wholly
 
 
 def detect_directions(
@@ -63,7 +63,7 @@ def detect_directions(
     if strokes is not None:
         drawn, much = crossed(of_strokes(strokes), rows, columns)
         fixed = much > 0
-        # the photo, which may say the very contrary, is silent beside them
+        # Beside the user's strokes the photo does not count: it may say the contrary.
         heard = 1 - np.minimum(_blurred(fixed.astype(np.float64), _BESIDE) / _PEAK, 1.0)
         vectors, weight = vectors * heard[..., None], weight * heard
         vectors[fixed] = drawn[fixed] * (_STROKES / much[fixed])[:, None]

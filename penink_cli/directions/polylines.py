@@ -14,7 +14,7 @@ _PIECES = 8  # of a Bézier segment
 
 @dataclass(frozen=True, eq=False)
 class WeightedLines:
-    """WeightedLines in the photo's frame, and how much each of their points counts.
+    """Lines in the photo's frame, and how much each of their points counts.
 
     points: (p, 2) x, y as parts of the frame's width and height. first: (n + 1,) where each line begins. weight: (p,).
     """

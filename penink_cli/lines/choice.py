@@ -8,13 +8,14 @@ import numpy as np
 
 from penink_cli.ground.model import Floats, Ints, LineChoice, Lines
 
-#: Room is kept on a map of such cells (points), over a Gaussian of this σ.
+#: The cells of the map that says how full each place is, and the σ of the Gaussian it is blurred by, points.
 CELL_PT, ROOM_PT = 3.0, 10.0
-#: A line of this rank may go where there is DENSITY; one of higher rank where it is fuller, up to MOST times.
+#: A line of rank r may make a place as full as the choice's density times LEAST_PART + r / USUAL_RANK, at most MOST.
 USUAL_RANK, LEAST_PART, MOST = 6.0, 0.7, 1.6
-#: The least rank at this size on paper (root of the area, points): with more room faint lines become worth while.
+#: The least rank drawn on a sheet the root of whose area is SIZE_PT. It falls with the root of the size, within RANKS:
+#: a larger print has room for fainter lines.
 SIZE_PT, LEAST_RANK, RANKS = 432.0, 0.8, (0.5, 1.6)
-#: What is shorter on paper is no line, what is finer no spot.
+#: The least length of a line, and the least breadth of a spot, points on paper.
 SHORTEST_PT, FINEST_SPOT_PT = 3.0, 0.25
 
 
@@ -29,7 +30,7 @@ def chosen(lines: Lines, width_pt: float, height_pt: float, choice: LineChoice, 
     least = least_rank(width_pt, height_pt) if choice.min_rank is None else choice.min_rank
     scale = np.array([width_pt / lines.width, height_pt / lines.height])
     order = np.argsort(-lines.rank, kind="stable")
-    # a stamp has room for few lines, but eyes are eyes
+    # A stamp has room for few lines, and still needs its eyes.
     needed = np.where(lines.breadth > 0, min(least, LEAST_RANK), least)
     order = order[(lines.rank[order] >= needed[order]) & (lines.white[order] == white)]
     room = _Room(width_pt, height_pt)

@@ -25,43 +25,47 @@ from penink_cli.lines.oriented import Picture
 from penink_cli.lines.spots import Spot, covered, spots
 from penink_cli.lines.tracing import Traces
 
-#: The working size: the root of its area, pixels, how far a smaller photo is enlarged at the most, the longest side.
+#: The working size: the root of its area, pixels; the most that a smaller photo is enlarged; the longest side, pixels.
 SIDE, MOST_ENLARGED, LONGEST = 760.0, 2.0, 20_000
-#: What ranks and lengths are reckoned in: so many working pixels are a point of a picture of usual size.
+#: Working pixels to a point of a picture of usual size, in which the lengths that make a rank are measured.
 PIXELS_PER_PT = 1.76
-#: Contrast is evened out over a Gaussian of this σ (pixels): a deviation of EVEN / (its own + FLOOR), within bounds.
+#: Contrast is evened out over a Gaussian of σ LOCAL (pixels): where the deviation is s, it is multiplied by
+#: EVEN / (s + FLOOR), within the bounds GAINS.
 LOCAL, EVEN, FLOOR, GAINS = 24.0, 0.10, 0.035, (0.4, 1.8)
-#: and less where there is grain all over: so many of its deviations are added to the floor.
+#: Grain is not to be amplified: so many of its deviations are added to FLOOR.
 GRAIN = 5.0
 #: σ across and along, pixels, of the fine bank, and of the coarse one on a view of half the size.
 FINE, COARSE = (0.75, 2.0), (1.0, 3.5)
-#: Lines begin at a response of HIGH and end at LOW; FULL is that of a line of the broadest pen.
+#: The response at which a dark line begins, at which it ends, and that of a line which the broadest pen draws.
 HIGH, LOW, FULL = 0.005, 0.00175, 0.022
+#: The response at which a light line begins.
 WHITE_HIGH = 0.006
-#: How much of the surroundings' response is taken off.
+#: The part of the surroundings' response that is subtracted: texture answers everywhere.
 INHIBITION = 0.25
-#: In texture, where a line's response is less than this part of its own and its surroundings', it is worth less.
+#: A line whose response is less than this part of its own and its surroundings' is one of a texture, and worth less.
 ALONE = 0.4
-#: A light line must be lighter than what lies so many pixels to each side of it by this.
+#: A light line must be lighter, by RIDGE, than what lies BESIDE pixels from it on either side.
 BESIDE, RIDGE = 3.0, 0.03
-#: A spot's rank: so many times the cube of its contrast, a part of that where it is longer than broad; less where there
-#: is more of lines around it than this response (in lettering they are letters), where it is broader than SMALL
-#: (pixels: hatching can show it) and where its border is less crisp.
+#: A spot's rank is SPOT times the cube of its contrast, times LONG_SPOT where it is longer than broad. It is less where
+#: lines around it answer more than CALM (a spot in lettering is a letter), where it is broader than SMALL pixels
+#: (hatching can show it), and where its border has less than CRISP of the contrast.
 SPOT, LONG_SPOT, CALM, SMALL, CRISP = 12.0, 0.6, 0.004, 12.0, 0.45
-#: Drawn as broad as it is where it is so dark, and less the less it is.
+#: The darkness from which on a spot is drawn as broad as it is; a lighter one is drawn smaller.
 DARK = 0.75
-#: What lies in or along a spot and is no longer than so many times the spot is a part of it.
+#: A line in or along a spot is a part of the spot, unless it is longer than so many times the spot.
 AROUND = 4.0
-#: How far from a spot a fine line, and a coarse one, are still its own: the filters' reach.
+#: How far from a spot, pixels, a fine line and a coarse one may still be a part of it: the filters' reach.
 BESIDE_SPOT = (1.5, 6.0)
-#: A coarse line stays where at least so much of it is further than so many pixels from any fine line of some rank.
+#: A coarse line stays where at least FAR of it is further than NEAR pixels from all fine lines of a rank above
+#: FAR_RANK.
 FAR, NEAR, FAR_RANK = 0.7, 5.0, 0.45
-#: σ of the field that lines are held against where none is given, and of the tone around them, pixels.
+#: σ, pixels, of the field that lines are compared with where none is given, and of the tone around them.
 FIELD, GROUND = 8.0, 4.0
-#: Lines no further from the frame than this (pixels) all along are a scan's rim.
+#: A line that is within so many pixels of the frame all along is a scan's rim.
 RIM = 5.0
+#: The least rank of a line, and its least length, pixels.
 LEAST_RANK, SHORTEST = 0.5, 5.0
-#: A point is kept every so many steps; a smooth curve through them strays by a fifth of a pixel.
+#: Every so many steps, about a pixel each, a point is kept: a smooth curve through these strays by a fifth of a pixel.
 STEP = 6.0
 
 
@@ -191,7 +195,17 @@ def _traced(
 
 
 def _lines(traces: Traces, shortest: float) -> list[_Line]:
-    """Lines long enough, with their ranks."""
+    """The lines of at least `shortest` pixels, with their ranks.
+
+    rank = n^¾ · contrast · alone · min(alone / ALONE, 1.1) / (1 + bend²) · max(|cos Δ|, 2 clear², 2 light), where
+
+    - n is the length in points of a picture of usual size, at most 60, and contrast the response in parts of FULL;
+    - alone is the response in parts of itself and three times the surroundings': 1 on even ground, little in texture;
+    - bend is the turning, radians a point, in parts of a quarter;
+    - Δ is the angle to the field of directions: what runs along the form tells it;
+    - clear (contrast · alone, 1 from .55 on) and light (1 where the ground is lighter than a tone of .2, 0 from .3 on)
+      let a line count that runs across the form.
+    """
     length = traces.length / PIXELS_PER_PT
     keep = np.flatnonzero(traces.length >= shortest)
     n = np.minimum(length, 60.0)

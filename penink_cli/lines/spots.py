@@ -24,8 +24,8 @@ CONTRAST = 0.2  # least grey step of a spot
 LONGEST = 2.3  # times as long as broad
 FILLED = 0.82  # the part of its ellipse that it covers
 OPEN = 0.06  # the part of its surroundings that may be as dark
-#: What is thinner than this part of its radius may hang on to it, as lashes do, from a radius of so many pixels on and
-#: around so much of it.
+#: Things thinner than THICK of a spot's radius may be attached to it, as lashes are to a pupil: to a spot of at least
+#: LEAST_ATTACHED pixels' radius, and along at most ATTACHED of its border.
 THICK, LEAST_ATTACHED, ATTACHED = 0.5, 3.0, 0.4
 HOLLOW = 0.2  # the part of it that may be light, as an eye's catchlight is
 CRISP = 0.35  # the part of its contrast that its border, two pixels wide to each side, makes up

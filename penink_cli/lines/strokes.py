@@ -10,9 +10,10 @@ from penink_cli.ground import pens
 from penink_cli.ground.model import Floats, LineChoice, Lines, Strokes
 from penink_cli.lines.choice import chosen, lengths
 
-#: Distance of knots; detail finer than SMOOTH is smoothed away.
+#: The distance of knots, and the σ, about, over which lines are smoothed, points.
 KNOT_PT, SMOOTH_PT = 3.0, 0.6
-#: The finest line a pen draws, in parts of its broadest; tips taper over so many points to this part.
+#: The finest line that a pen draws, in parts of its broadest; the length of a tip, points; its width at the end, in
+#: parts of the line's.
 FINEST, TIP_PT, TIP = 0.25, 12.0, 0.45
 
 
