@@ -8,7 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from penink_cli.blasting import curves, sweep, walls
+from penink_cli.blasting import curves, rims, sweep, walls
+from penink_cli.blasting.curve_fitting import over_chords
 from penink_cli.blasting.sheet import SIGMA_PT, Cells, Sheet
 from penink_cli.ground.model import Floats, HatchLayer, Ints, Strokes
 
@@ -18,6 +19,8 @@ STEP_PT = 1.5
 BATCHES = 4
 #: Strokes along the frame: their least length, points, and how many rows of them there are at the most.
 SHORTEST_RIM_PT, RIM_ROWS = 6.0, 3
+#: Strokes along edges follow them within this.
+EDGE_TOLERANCE_PT = 0.1
 #: A piece shorter than STUB_PT is joined to the stroke that goes on from it, unless the two lie further apart across
 #: their direction than STEP_ASIDE_PT.
 STUB_PT, STEP_ASIDE_PT = 20.0, 0.9
@@ -175,6 +178,25 @@ def lattice(
     return between_walls(
         points, first, none.astype(bool), none, np.full(len(half), pen), painted, borders, sheet, -due
     )
+
+
+def along_edges(sheet: Sheet, pen: float, borders: walls.Walls, darkest_from: float) -> Candidates:
+    """Strokes along strong edges on their dark side, where it is darker than `darkest_from`, as near as a pen may come.
+
+    Lines that meet an edge at an angle leave notches before it, and where a field turns there are gaps.
+    """
+    painted = pen + sheet.gain_pt
+    parts = []
+    for line in rims.along_edges(borders, sheet.tone, 0.55 * painted, darkest_from):
+        n = max(1, round(len(line) * rims.STEP_PT / sweep.STROKE_PT[1]))
+        cuts = [(len(line) - 1) * k // n for k in range(n + 1)]
+        parts += [line[a : b + 1] for a, b in itertools.pairwise(cuts)]
+    first = curves.starts(np.array([len(part) for part in parts], np.int64))
+    points, first = over_chords(np.concatenate([np.zeros((0, 2)), *parts]), first, EDGE_TOLERANCE_PT)
+    none, widths = np.zeros((len(parts), 2)), np.full(len(parts), pen)
+    return between_walls(
+        points, first, none.astype(bool), none, widths, painted, borders, sheet, np.zeros(len(parts))
+    )  # fmt: skip
 
 
 def rim(sheet: Sheet, pen: float, borders: walls.Walls, darkest_from: float, seed: int) -> Candidates:

@@ -63,6 +63,9 @@ FINE_COST, FINE_SHORTEST_PT = 0.02, 20.5
 FILLER_COST, FILLER_CAUTION, FILLER_SHORTEST_PT = 0.05, 1.3, 4.0
 #: Along the frame strokes are drawn where the tone is above this; how many times they count their own ink.
 RIM_TONE, RIM_CAUTION = 0.85, 4.0
+#: Strokes along strong edges, beside lines that follow a field: the tone from which on there are any, and how many
+#: times they count their own ink.
+EDGE_TONE, EDGE_CAUTION = 0.5, 1.5
 #: Strokes along a field are fitted anew: the tolerance, and the distance of the points fitted to, points.
 REFIT_PT, REFIT_STEP_PT = 0.15, 2.0
 #: The distance of the rows of fine strokes tried, points, and the moves across, in rows, that find the middle of a gap.
@@ -214,6 +217,13 @@ def fine_strokes(
         shortest_pt=candidates.SHORTEST_RIM_PT,
     )  # fmt: skip
     out = [rim.drawn(runs, moved)]
+    if form:
+        part = candidates.along_edges(sheet, min(pens), borders, EDGE_TONE)
+        runs, moved = sheet.place(
+            part.lines, part.widths, part.batches, walls=part.bounded, cost=FINE_COST, caution=EDGE_CAUTION,
+            shortest_pt=candidates.SHORTEST_RIM_PT,
+        )  # fmt: skip
+        out.append(part.drawn(runs, moved))
     seen = sheet.spread(sheet.error()) - np.float32(FINE_SEEN)
     for i, (layer, pen) in enumerate(zip(layers, pens)):
         if layer.spacing_pt > 0:

@@ -23,6 +23,8 @@ FRAME_PT, EDGE_PT = 0.4, 0.42
 FRAME, EDGE = (2 * FRAME_PT, 0.6, 1.0), (2 * EDGE_PT, 0.35, 0.65)
 #: An edge has one on its darker side, where that is darker than the other by so much.
 DARKER = 0.2
+#: A line along an edge has more samples: what is darker for less is what lies beyond the other side of a thin thing.
+SHORTEST = 6
 #: Distance of a line's samples.
 STEP_PT = 1.0
 
@@ -34,10 +36,10 @@ def along_frame(width: float, height: float) -> list[Floats]:
     return [_sampled(np.array(side)) for side in pairwise(corners)]
 
 
-def along_edges(borders: Walls, tone: Cells) -> list[Floats]:
-    """Lines along strong edges on their dark side, each in samples (k, 2).
+def along_edges(borders: Walls, tone: Cells, within: float = EDGE_PT, darkest_from: float = 0.0) -> list[Floats]:
+    """Lines along strong edges on their dark side, so far within, each in samples (k, 2).
 
-    tone: (rows, columns) of the whole sheet.
+    tone: (rows, columns) of the whole sheet; it is darker there than `darkest_from`.
     """
     segments = borders.segments[borders.inside > 0]
     if not len(segments):
@@ -48,10 +50,10 @@ def along_edges(borders: Walls, tone: Cells) -> list[Floats]:
         middle = _smoothed(_sampled(vertices[trail]))
         normal = _normals(middle)
         left, right = (_at(borders, tone, middle + side * BESIDE_PT * normal) for side in (-1.0, 1.0))
-        for side, more in ((-1.0, left - right), (1.0, right - left)):
-            for low, high in _runs(more > DARKER):
-                if high - low > 2:
-                    out.append(middle[low:high] + side * EDGE_PT * normal[low:high])
+        for side, own, other in ((-1.0, left, right), (1.0, right, left)):
+            for low, high in _runs((own - other > DARKER) & (own > darkest_from)):
+                if high - low > SHORTEST:
+                    out.append(middle[low:high] + side * within * normal[low:high])
     return out
 
 

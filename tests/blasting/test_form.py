@@ -174,3 +174,19 @@ def test_the_command_takes_a_field_and_says_where_it_is_of_no_use(penink, tmp_pa
     assert along.returncode == 0 and along.stdout != plain.stdout and not along.stderr
     dots = penink("blast", "-t", "stipple", "--directions", tmp_path / "d.pgm", "--width", "1in", grey)
     assert dots.returncode == 0 and b"stipple is not drawn along directions" in dots.stderr
+
+
+def test_what_is_dark_has_a_line_along_its_edge():
+    """Lines that meet an edge at an angle leave notches before it."""
+    side = 120
+    a, b = np.array([40.0, 0.0]), np.array([75.0, 120.0])
+    y, x = np.mgrid[0:side, 0:side] + 0.5
+    tone = np.where((x - a[0]) - y * (b - a)[0] / (b - a)[1] < 0, 0.75, 0.1)
+    edges = EdgeList(side, side, np.array([a, b]), np.array([[0, 1]]))
+    strokes = blast(tone, side, side, edges, find_texture("form"), directions=field(lambda x, y: 0.2), device_dpi=None)
+    page = measures.rendered(strokes, 600)
+    rows, columns = np.mgrid[0 : len(page), 0 : page.shape[1]] * (72 / 600)
+    away = ((columns - a[0]) - rows * (b - a)[0] / (b - a)[1]) * (b - a)[1] / np.hypot(*(b - a))
+    inner = (rows > 5) & (rows < side - 5)
+    assert page[inner & (away > -0.15) & (away < 0)].mean() > 0.85
+    assert page[inner & (away > 0.15) & (away < 1.5)].mean() < 0.2
