@@ -14,17 +14,17 @@ from penink_cli.blasting.sheet import Cells, resample
 from penink_cli.ground.masks import distance, labelled
 from penink_cli.ground.model import Floats, Strokes
 
-#: A thing is where the tone exceeds half of solid; this dark at its core, with nothing darker than PAPER around it from
-#: NEAR to FAR points off, and no further from its border to its middle than HALF points.
+#: A thing is where the tone exceeds LEVEL. It reaches CORE somewhere, nothing from NEAR_PT to FAR_PT around it is
+#: darker than PAPER, and no place in it is further than HALF_PT from its border.
 LEVEL, CORE, PAPER, NEAR_PT, FAR_PT, HALF_PT = 0.5, 0.75, 0.12, 1.0, 2.5, 7.0
-#: Rows of strokes: so many painted widths apart.
+#: The distance of the rows of strokes, in painted widths.
 PITCH = 0.8
-#: Up to this size (points) one dot is the whole thing, if it is no more than so many times as long as broad and
-#: fills so much of the box around it.
+#: A thing no larger than DOT_PT is one dot, if it is at most ROUND times as long as broad and fills at least FULL of
+#: the box around it.
 DOT_PT, ROUND, FULL = 3.2, 1.4, 0.6
-#: What is covered by so much is drawn already.
+#: The part of a thing that ink on the sheet covers from which on it counts as drawn already.
 INKED = 0.6
-#: The tone is looked at so finely, pixels in a point.
+#: Pixels a point at which the tone is examined.
 FINE = 2.0
 
 

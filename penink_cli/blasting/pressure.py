@@ -1,9 +1,9 @@
 """The hand's pressure along each stroke: hatching swells where the picture is darker than its surroundings.
 
-Lines of a hatching lie further apart than the finest things in a picture, and where they lie is found for what is
-around them. What is finer is told by their width, as with a pen whose nib gives way: at each knot it is the stroke's
-own times the tone there over the mean tone around. What that makes too dark or too light on the whole, as the eye sees
-it, is then taken back.
+Lines of a hatching lie further apart than the finest things in a picture; their places follow the tone of a wider
+surrounding. Their widths tell the finer things, as with a pen whose nib gives way: at each knot the width is the
+stroke's own, times the tone there, over the mean tone around. Where this makes the sheet too dark or too light as the
+eye sees it, the widths are corrected.
 """
 
 from __future__ import annotations
@@ -17,17 +17,17 @@ from penink_cli.blasting.sheet import SIGMA_PT, Cells, Sheet
 from penink_cli.composition.filters import blurred
 from penink_cli.ground.model import Floats, Ints, Strokes
 
-#: σ of the tone at a knot, of the tone around it, and a tone added to both.
+#: σ of the Gaussian for the tone at a knot and for the tone around it, points; a tone added to both.
 FINE_PT, AROUND_PT, FLOOR = 0.5, SIGMA_PT, 0.02
 #: The least and the greatest width, in parts of the stroke's own.
 LEAST, MOST = 0.2, 2.6
-#: Knots are no closer than this, and a segment is split into so many parts.
+#: The least distance of knots, points, and the numbers of parts that a segment may be split into.
 KNOT_PT, KNOTS = 2.0, (1, 2, 3, 4, 6, 8, 12, 16, 24, 32)
-#: Widths may be off by this much (points), for the sake of fewer knots.
+#: By how much widths may be off, points, so that fewer knots do.
 TOLERANCE_PT = 0.06
-#: Rounds in which the tone is set right, by no more than this part of the widths in each.
+#: Rounds in which the widths are corrected, and the most of a width that a round changes.
 ROUNDS, CORRECTION = 4, 0.3
-#: Where the tone is less, an error counts as little as there.
+#: Errors are held against the tone, or against this where the tone is less.
 SINGLE = 0.1
 
 

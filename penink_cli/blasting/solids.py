@@ -15,14 +15,14 @@ from penink_cli.composition.filters import blurred
 from penink_cli.ground.masks import distance, labelled
 from penink_cli.ground.model import Floats, Strokes
 
-#: What is darker is black.
+#: The tone from which on it is black.
 BLACK = 0.96
-#: The tone is smoothed with a Gaussian of this σ to see where it is black; where it falls below LIGHT within so many
-#: points the black ends where it has fallen by half.
+#: Whether it is black is told by the tone under a Gaussian of σ SMOOTH_PT. Where the tone falls below LIGHT within
+#: FALLS_PT, black ends where half of the fall is done.
 SMOOTH_PT, LIGHT, FALLS_PT = 0.5, 0.6, 1.4
-#: What is smaller than this (square points) is left to the hatching.
+#: The least area that is filled, square points; hatching draws the rest.
 LEAST_PT2 = 3.0
-#: The pen that fills: fine, for rows lie as far as that from a border which runs along them.
+#: The pen that fills. It is fine because rows may lie as far as its width from a border that runs along them.
 PEN_PT = 0.35
 
 

@@ -23,18 +23,19 @@ from penink_cli.blasting.sheet import Cells, Sheet
 from penink_cli.ground.device import MEAN
 from penink_cli.ground.model import Floats, HatchLayer, Ints, Strokes
 
-#: The two passes: the tones that they make, and how far the second is turned from the field.
+#: Of each of the two passes: the tone from which and up to which it draws, and its turn from the field, degrees.
 PASSES = ((0.0, 0.72, 0.0), (0.68, 0.99, 25.0))
-#: A cell that lacks less than this part of its tone needs no further stroke.
+#: The part of its tone that a cell may lack without needing a further stroke.
 STOP = 0.3
-#: A stroke's ink counts within this times the square root of its area over the tone.
+#: How far a stroke's ink counts, in square roots of its area over the tone: the lighter, the wider.
 SPREAD = 0.45
-#: Examples are scaled, and turned from the field by so many degrees at the most.
+#: The least and greatest scale of an example, and the most that it is turned from the field, degrees.
 SCALES, TURN = (0.8, 1.2), 10.0
+#: Examples tried for each place.
 TRIES = 4
-#: Fine strokes are no shorter; with one pen for all they are drawn where it is by so much lighter.
+#: The least length of a fine stroke, points; with one pen for all, by how much too light a place must be for one.
 FINE_SHORTEST_PT, ONE_PEN_SEEN = 9.0, np.float32(0.02)
-#: Samples of an example, samples from knot to knot of a stroke.
+#: The distance of an example's samples, points, and how many samples there are from knot to knot of a stroke.
 STEP_PT, KNOTS = 1.5, 4
 
 

@@ -1,8 +1,9 @@
 """Which lines go on where it is light: of each two neighbours one, of those that are left one again, and so on.
 
-Lines along a field begin and end where they must, so they cannot be counted through. They are looked at in pieces:
-those beside each other are to be on different sides, those that follow each other on one line on the same. Where not
-all can be had, a line leaves off and its neighbour goes on instead, preferably where it is dark and does not show.
+Lines along a field begin and end where the field has them, so even and odd ones cannot be counted through. The lines
+are cut into pieces. Pieces beside each other should differ, pieces that follow each other on one line should be alike.
+Where both cannot be had, a line leaves off and its neighbour goes on instead, preferably where it is dark and does not
+show.
 
 This module alone imports the compiled kernel `taking_turns`.
 """
@@ -20,15 +21,16 @@ from penink_cli.ground.model import Floats, Ints
 
 Mask = npt.NDArray[np.bool_]
 
-#: How often one of two is left out: at the most one in so many powers of two remains.
+#: How many times every second line is left out: at the least one line in 2^LEVELS remains.
 LEVELS = 3
-#: Samples to a piece, how many neighbours the next piece of the same line outweighs, and the rounds of settling.
+#: Samples of a piece; the weight of the next piece on the same line beside that of one neighbour; rounds of settling.
 PIECE, ALIKE, ROUNDS = 12, 16.0, 12
-#: Where the next line is looked for, in parts of the distance of lines: from where on, how often; and the cells' width.
+#: The search for the next line across, in parts of the distance of lines: where it begins, its step, how many steps
+#: there are, and the width of the cells of its grid.
 NEAREST, STEP, PROBES, CELL = 0.5, 0.14, 11, 0.4
-#: Lines are taken to be no nearer and no further from each other than so many times their distance.
+#: The bounds within which the distance of two lines is believed, in parts of the usual one.
 LEAST, MOST = 0.4, 2.0
-#: Lines are beside each other where the cosine of their angle is more.
+#: The least cosine of the angle between two lines that count as beside each other.
 ALIKE_COSINE = 0.8
 
 

@@ -15,23 +15,24 @@ from penink_cli.blasting import curves, walls
 from penink_cli.blasting.sheet import Cells, Sheet
 from penink_cli.ground.model import Floats, Ints, Strokes
 
-#: How much darker a crest must be than what lies beside it on either side, on its own and on the mean of a line.
+#: How much darker than both its sides a crest must be: in each cell, and in the mean along a line.
 CONTRAST, MEAN_CONTRAST = 0.05, 0.09
-#: Beside means so many cells away.
+#: How far away, in cells, its sides are.
 BESIDE = 3.0
-#: What lies beside may be so dark at the most: in the dark a line more is not seen.
+#: The greatest tone of the sides: in the dark one line more is not seen.
 DARKEST_GROUND = 0.6
+#: The least length of a line, and the distance of a stroke's knots, points.
 SHORTEST_PT = 6.0
 KNOT_PT = 7.0
-#: So many strokes lie side by side along one thing at the most.
+#: The most strokes side by side along one thing.
 MOST = 4
-#: Each of them begins and ends so many times further in than the next one towards the middle, in widths of what is
-#: painted, at the start and at the end: cut off straight they were bars.
+#: Strokes side by side taper: each begins and ends further in than its neighbour towards the middle, by so many painted
+#: widths at the start and at the end. Strokes of one length would be a bar.
 TAPER = (2.0, 3.0)
-#: But no further than that much of a leg between knots, or small dark things, such as pupils, would lose their weight.
+#: The most that a stroke is shortened by this, in parts of a leg between knots: small dark things, such as pupils, keep
+#: their weight.
 MOST_OF_LEG = 0.3
-#: What is fainter than a line of the pen is drawn with a finer one, of so much of its width at the least,
-#: and no finer than the device's pixels bear.
+#: A thing fainter than a line of the pen is drawn with a finer one: its least width in parts of the pen's.
 FINEST = 0.55
 
 

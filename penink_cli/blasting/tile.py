@@ -12,22 +12,23 @@ from penink_cli.blasting.sheet import SIGMA_PT, Cells, Sheet
 from penink_cli.ground.median import median
 from penink_cli.ground.model import EdgeList, Floats, Ints, Strokes, Texture
 
-#: What a run of ink must gain, in cells × tone.
+#: The gain, in cells × tone, below which a run of ink is not drawn.
 RUN_COST = 0.3
 #: Rounds of feeding the error back.
 ROUNDS = 4
 #: Sideways moves that are tried, points.
 MOVES = (-0.5, 0.5, 0.0)
+#: The distance at which strokes are sampled, points.
 STEP_PT = 1.5
-#: Copies of strokes that are laid out at a time: memory stays bounded on any sheet.
+#: Copies of strokes that are laid out at a time, so that memory stays bounded on any sheet.
 CHUNK = 12_000
-#: A stroke is not tried where the tone is lighter by this than where it enters: tiles have holes that only late strokes
-#: fill. Dots lie so evenly that fewer will do.
+#: A stroke is tried where the tone exceeds the tone at which it enters, less this: tiles have holes that only late
+#: strokes fill. Dots lie so evenly that less will do.
 SLACK, SLACK_DOTS = 0.4, 0.15
-#: Less of the error is fed back where the tone is lighter than this part of what one stroke makes, by the square of how
-#: much lighter: a single stroke is bound to be too dark where it is and too light beside it, and would be given up.
+#: Below this part of the tone that one stroke makes, less of the error is fed back, by the square of the ratio. A
+#: single stroke is too dark where it is and too light beside it; with the full error fed back it would be dropped.
 SINGLE = 0.5
-#: Lighter than this dots along the frame would look like a line.
+#: The tone from which on dots are laid along the frame: with less ink around they would look like a line.
 RIM_TONE = 0.45
 
 
