@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import ast
 import os
 import re
 import shutil
 import subprocess
 import sys
+import tomllib
 
 import pytest
 
@@ -68,6 +70,34 @@ def test_it_comes_before_anything_else_is_done(tmp_path):
 def test_no_test_starts_a_program_that_nobody_installs():
     with pytest.raises(AssertionError, match=r"xmllint is not in \.ci/packages"):
         subprocess.run(["xmllint", "--version"], check=False)
+
+
+def imported() -> set[str]:
+    """Modules that tests import, in scripts that they run as well, which are not Python's own."""
+    found = set()
+    for path in (ROOT / "tests").rglob("*.py"):
+        tree = ast.parse(path.read_text("utf-8"))
+        for node in ast.walk(tree):
+            if isinstance(node, ast.Import):
+                found |= {name.name for name in node.names}
+            elif isinstance(node, ast.ImportFrom):
+                found.add(node.module)
+            elif isinstance(node, ast.Constant) and isinstance(node.value, str):
+                found |= set(re.findall(r"^\s*(?:import|from) ([A-Za-z]\w*)(?=\s*$| import |\.|,)", node.value, re.M))
+    own = {"tests", "penink_cli", "samples", "face"}  # the last is compiled by its test
+    return {name.split(".")[0] for name in found} - set(sys.stdlib_module_names) - own
+
+
+def test_tests_import_what_the_project_asks_for():
+    """And nothing that happens to lie beside it, as setuptools does in the environments of some Pythons."""
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
+    extras = project["optional-dependencies"]
+    asked = [*project["dependencies"], *extras["triangle"], *extras["test"], *extras["heic"], *extras["fuzz"]]
+    names = {re.match(r"[\w-]+", line)[0].lower().replace("-", "_") for line in asked}
+    called = {"PIL": "pillow", "skimage": "scikit_image"}
+    modules = imported()
+    assert {"numpy", "setuptools"} <= modules
+    assert {called.get(name, name).lower() for name in modules} <= names
 
 
 def test_a_program_that_is_missing_is_named_with_what_brings_it(monkeypatch, tmp_path):
