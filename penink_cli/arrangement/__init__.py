@@ -8,4 +8,5 @@ detection.detect_edges
   joints.join_ends            loose ends to what they stop short of
   simplification.simplify     few long segments, on an exact integer grid (planar)
   junctions.settle_junctions  corners and junctions put where the photo, rendered, shows them
+  strengths                   the grey step across each edge
 """

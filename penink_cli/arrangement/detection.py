@@ -18,6 +18,7 @@ from penink_cli.arrangement.junctions import settle_junctions
 from penink_cli.arrangement.planar import from_units, planar, to_units
 from penink_cli.arrangement.simplification import simplify
 from penink_cli.arrangement.smoothing import position_error, smooth, unbend
+from penink_cli.arrangement.strengths import strengths
 from penink_cli.ground import exact
 from penink_cli.ground.median import median
 from penink_cli.ground.model import EdgeList, Floats
@@ -29,7 +30,6 @@ _ALONE = 2.0  # times as steep as what is around: texture reaches 1.4 to 2, lett
 _BRIDGE = 0.4  # of that is enough for a chain that leads from a telling chain to another, or to the frame
 _LEAST_LENS = 0.32  # pixels
 _OWN = 1 / 12 + 1 / 3  # variance, pixels², of what a pixel's area and the central difference add to a blur
-_REACH, _BESIDE = 4.0, 1.5  # pixels along and beside an edge where its step is looked for at a vertex put there later
 _CAMERA_BLUR = 0.8  # pixels: pixel area, lens and the central difference, where nothing better is known
 
 
@@ -81,7 +81,9 @@ def detect_edges(
     def settle(arrangement: Planar, step: Floats) -> None:
         settle_junctions(arrangement, grey, step, lens, noise, blur)
 
-    return _arrange(points, chains, join_ends(points, chains, blur), tolerance, steepness, settle)
+    edges, slopes = _arrange(points, chains, join_ends(points, chains, blur), tolerance, steepness, settle)
+    measured = strengths(grey, edges, lens)
+    return replace(edges, strength=np.where(measured < 0, slopes, measured))
 
 
 def _compact(points: EdgePoints, chains: Chains) -> tuple[EdgePoints, Chains]:
@@ -140,7 +142,8 @@ def _arrange(
     tolerance: float,
     steepness: float,
     settle: Callable[[Planar, Floats], None],
-) -> EdgeList:
+) -> tuple[EdgeList, Floats]:
+    """The edges, and the step (m,) that the slopes at their ends tell, 0 where these tell nothing."""
     height, width = points.shape
     places = joints.places
     positions = np.concatenate([np.clip(points.position, 0, (width, height)), places])
@@ -160,34 +163,7 @@ def _arrange(
     settle(arrangement, known)
     live = np.asarray(arrangement.live)[: len(ends)].astype(bool)
     edges = np.asarray(arrangement.ends)[live].astype(np.int64)
-    at_ends = known[edges]
-    for e, end in np.argwhere(fresh[edges]).tolist():
-        here, there = from_units(np.asarray(arrangement.vertices)[[edges[e, end], edges[e, 1 - end]]])
-        at_ends[e, end] = _step_beside(points, step, here, there)
-    for e in np.flatnonzero(at_ends.max(axis=1) == 0).tolist():
-        here, there = from_units(np.asarray(arrangement.vertices)[edges[e]])
-        at_ends[e] = _step_beside(points, step, here, there, _REACH)
-    strength = np.clip(at_ends.max(axis=1), 0, 1)
-    used, edges = np.unique(edges, return_inverse=True)
+    used, place = np.unique(edges, return_inverse=True)
+    edges = place.reshape(-1, 2)
     vertices = from_units(np.asarray(arrangement.vertices)[used])
-    return EdgeList(width, height, vertices, edges.reshape(-1, 2), strength)
-
-
-def _step_beside(points: EdgePoints, step: Floats, here: Floats, there: Floats, beside: float = _BESIDE) -> float:
-    """The step of the edge point next to `here` among those on the edge from here to there; 0 where there are none."""
-    height, width = points.shape
-    along = there - here
-    length = max(float(exact.length(along)), 1e-9)
-    reach = min(length, _REACH)
-    centre = here + along * (0.5 * reach / length)
-    left, top = (int(v) for v in np.maximum(np.floor(centre - 0.5 * reach - beside), 0))
-    right, bottom = (int(v) for v in np.minimum(np.floor(centre + 0.5 * reach + beside) + 1, (width, height)))
-    near = points.index[top:bottom, left:right].ravel()
-    near = near[near >= 0]
-    if not len(near):
-        return 0.0
-    away = points.position[near] - here
-    forward = (away[:, 0] * along[0] + away[:, 1] * along[1]) / length
-    sideways = np.abs(away[:, 0] * along[1] - away[:, 1] * along[0]) / length
-    on = (sideways <= beside) & (forward >= -beside) & (forward <= length + beside)
-    return float(step[near[on]][np.argmin(np.abs(forward[on]))]) if on.any() else 0.0
+    return EdgeList(width, height, vertices, edges), np.clip(known[used][edges].max(axis=1), 0, 1)

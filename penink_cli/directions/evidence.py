@@ -13,9 +13,8 @@ import numpy as np
 from penink_cli.composition.filters import Picture, blurred, shrunk
 from penink_cli.composition.mixing import lab
 from penink_cli.directions._compiled import field as kernel
+from penink_cli.geometry import walls
 from penink_cli.ground.model import ColourImage, EdgeList, Floats, GreyImage
-from penink_cli.reconstruction._compiled import walls as _walls
-from penink_cli.reconstruction.extraction import segments
 
 LONG = 384  # pixels of the long side of the view that tangents are taken of
 _HUE = 0.7  # how much a step in colour counts beside one in lightness
@@ -94,9 +93,7 @@ def _trust(edges: EdgeList, rows: int, columns: int) -> Floats:
     trust = np.ones((rows, columns))
     strong = _strong(edges)
     if len(strong.edges):
-        distance = np.full((rows, columns), np.float32(1e9))
-        _walls.near(*segments(strong, columns, rows), _BESIDE, distance)
-        beside = distance <= _BESIDE
+        beside = walls.distances(strong, columns, rows, _BESIDE) <= _BESIDE
         h, w = max(1, -(-rows // 4)), max(1, -(-columns // 4))
         part = np.clip((_surrounded(strong, h, w) - 0.5) / 0.3, 0, 1)
         part = (part * part * (3 - 2 * part))[np.arange(rows) * h // rows][:, np.arange(columns) * w // columns]
@@ -116,8 +113,7 @@ def _strong(edges: EdgeList) -> EdgeList:
 
 def _surrounded(strong: EdgeList, h: int, w: int) -> Floats:
     """(h, w) the part of the directions in which a strong edge is met within reach."""
-    distance = np.full((2 * h, 2 * w), np.float32(1e9))
-    _walls.near(*segments(strong, 2 * w, 2 * h), 0.8, distance)
+    distance = walls.distances(strong, 2 * w, 2 * h, 0.8)
     out = np.empty((h, w))
     kernel.surrounded((distance <= 0.8).astype(np.uint8), _REACH * 2 * max(h, w), _RAYS, out)
     return out
@@ -125,6 +121,5 @@ def _surrounded(strong: EdgeList, h: int, w: int) -> Floats:
 
 def links(edges: EdgeList, rows: int, columns: int) -> tuple[Floats, Floats]:
     """Whether strong edges cut the link of each sample to the next in its row, and to that of the next row: 0 or 1."""
-    walls = np.zeros((rows, columns), np.uint8)
-    _walls.block(*segments(_strong(edges), columns, rows), walls)
-    return (walls & _walls.RIGHT != 0).astype(np.float64), (walls & _walls.DOWN != 0).astype(np.float64)
+    met = walls.walls(_strong(edges), columns, rows)
+    return (met & walls.RIGHT != 0).astype(np.float64), (met & walls.DOWN != 0).astype(np.float64)

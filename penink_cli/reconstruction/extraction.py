@@ -13,24 +13,16 @@ from collections.abc import Callable
 import numpy as np
 import numpy.typing as npt
 
+from penink_cli.geometry import walls
 from penink_cli.ground import exact
 from penink_cli.ground import threads as threading
-from penink_cli.ground.model import EdgeList, Floats
+from penink_cli.ground.model import EdgeList
 from penink_cli.reconstruction._compiled import clean as _clean
-from penink_cli.reconstruction._compiled import walls as _walls
 from penink_cli.reconstruction.camera import camera_blur
 
 _SPREAD = 1.5
 _STIFFNESS = 0.3
 _BAND_ROWS = 64
-
-
-def segments(edges: EdgeList, width: int, height: int) -> tuple[Floats, Floats, Floats, Floats]:
-    """Ends ax, ay, bx, by (m,) of the edges in pixels of an image of width × height."""
-    vertices = edges.scaled(width, height)
-    a, b = vertices[edges.edges[:, 0]], vertices[edges.edges[:, 1]]
-    ax, ay, bx, by = (np.ascontiguousarray(part) for part in (*a.T, *b.T))
-    return ax, ay, bx, by
 
 
 def extract_samples(
@@ -56,7 +48,7 @@ def extract_samples(
     if not len(edges.edges):
         return values
     margin = contamination(camera_blur(values, edges)) if margin is None else margin
-    distance = _distance(edges, width, height, margin)
+    distance = walls.distances(edges, width, height, margin)
     report(f"chosen: --margin {float(margin)}; {np.mean(distance <= margin):.1%} of the pixels are replaced")
     ground = walkable(edges, width, height, distance > margin)
     out = np.empty_like(values)
@@ -73,12 +65,11 @@ def extract_samples(
 
 def walkable(edges: EdgeList, width: int, height: int, clean: npt.NDArray[np.bool_] | None = None) -> _clean.Ground:
     """The steps between pixel centres of an image of width × height that cross no edge, and the pixels that count."""
-    walls = np.zeros((height, width), np.uint8)
-    _walls.block(*segments(edges, width, height), walls)
-    right, down = walls & _walls.RIGHT == 0, walls & _walls.DOWN == 0
+    met = walls.walls(edges, width, height)
+    right, down = met & walls.RIGHT == 0, met & walls.DOWN == 0
     right[:, -1] = False
     down[-1] = False
-    return _clean.Ground(_words(right), _words(down), _words(clean if clean is not None else walls < 4))
+    return _clean.Ground(_words(right), _words(down), _words(clean if clean is not None else met < 4))
 
 
 def _words(bits: npt.NDArray[np.bool_]) -> npt.NDArray[np.uint64]:
@@ -92,14 +83,7 @@ def _words(bits: npt.NDArray[np.bool_]) -> npt.NDArray[np.uint64]:
 def contaminated(grey: npt.NDArray[np.floating], edges: EdgeList, margin: float | None = None) -> npt.NDArray[np.bool_]:
     """Which pixels (h, w) `extract_samples` replaces."""
     margin = contamination(camera_blur(grey, edges)) if margin is None else margin
-    return _distance(edges, grey.shape[1], grey.shape[0], margin) <= margin
-
-
-def _distance(edges: EdgeList, width: int, height: int, margin: float) -> npt.NDArray[np.float32]:
-    """Distance (h, w) from each pixel's centre to the nearest edge, infinite beyond margin."""
-    distance = np.full((height, width), np.inf, np.float32)
-    _walls.near(*segments(edges, width, height), margin, distance)
-    return distance
+    return walls.distances(edges, grey.shape[1], grey.shape[0], margin) <= margin
 
 
 def contamination(blur: float) -> float:

@@ -21,13 +21,12 @@ from itertools import count
 import numpy as np
 import numpy.typing as npt
 
+from penink_cli.geometry import walls
 from penink_cli.ground import exact
 from penink_cli.ground.errors import ParameterError
 from penink_cli.ground.model import EdgeList
-from penink_cli.reconstruction._compiled import walls as _walls
 from penink_cli.reconstruction.camera import camera_blur
 from penink_cli.reconstruction.enlarge import reconstruct
-from penink_cli.reconstruction.extraction import segments
 from penink_cli.reconstruction.fit import AREA, POINT
 from penink_cli.reconstruction.reduction import reduce
 from penink_cli.reconstruction.shrinking import shrunk
@@ -237,10 +236,7 @@ class _Regions:
     """The regions that edges enclose, as far as pixels of the photo tell."""
 
     def __init__(self, edges: EdgeList, height: int, width: int) -> None:
-        walls = np.zeros((height, width), np.uint8)
-        _walls.block(*segments(edges, width, height), walls)
-        parent = np.zeros(height * width, np.int32)
-        _walls.regions(walls, parent)
+        parent = walls.regions(walls.walls(edges, width, height))
         wanted = np.bincount(parent) >= max(LEAST_REGION_PX, LEAST_REGION * height * width)
         self.count = int(wanted.sum())
         number = np.where(wanted, np.cumsum(wanted), 0).astype(np.int32)

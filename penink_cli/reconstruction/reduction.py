@@ -5,14 +5,13 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from penink_cli.geometry import edge_index
+from penink_cli.geometry import edge_index, walls
 from penink_cli.ground import threads as threading
 from penink_cli.ground.errors import ParameterError
 from penink_cli.ground.model import EdgeList, Floats
 from penink_cli.reconstruction._compiled import clean as _clean
-from penink_cli.reconstruction._compiled import walls as _walls
 from penink_cli.reconstruction.camera import camera_blur
-from penink_cli.reconstruction.extraction import segments, walkable
+from penink_cli.reconstruction.extraction import walkable
 from penink_cli.reconstruction.fit import AREA, POINT, fit_plain, fit_samples
 from penink_cli.reconstruction.shrinking import shrunk
 
@@ -78,9 +77,8 @@ def _take_near_edges(values: npt.NDArray[np.float32], edges: EdgeList, out: Floa
     """Replace the samples that an edge is near by planes fitted to what each can reach."""
     height, width = out.shape
     old_height, old_width = values.shape
-    near = np.full(out.shape, np.inf, np.float32)
-    _walls.near(*segments(edges, width, height), _NEAR, near)
-    lines = segments(edges, old_width, old_height)
+    near = walls.distances(edges, width, height, _NEAR)
+    lines = walls.segments(edges, old_width, old_height)
     ground = walkable(edges, old_width, old_height)
     across, down = int(old_width // _CELL) + 2, int(old_height // _CELL) + 2
     index = edge_index.lists(*edge_index.cells(np.column_stack(lines), _CELL), across, down)

@@ -13,12 +13,12 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
+from penink_cli.geometry import walls
 from penink_cli.geometry.trails import trails
 from penink_cli.ground.model import EdgeList, Floats, Ints
-from penink_cli.reconstruction._compiled import walls as _walls
 from penink_cli.reconstruction.camera import camera_blur
 from penink_cli.reconstruction.enlarge import reconstruct
-from penink_cli.reconstruction.extraction import extract_samples, segments
+from penink_cli.reconstruction.extraction import extract_samples
 from penink_cli.reconstruction.grid import SEEN_PT, VIEW_PX
 from penink_cli.reconstruction.reduction import reduce
 from penink_cli.reconstruction.shrinking import shrunk
@@ -115,9 +115,7 @@ def _saved(
         difference = _difference(arrangement, photo, columns, rows, blur, SEEN_PT * width / seen_at, threads)
         errors.append(difference * difference)
     saved = np.rint((errors[1] - errors[0]) * (255.0**2 * _PARTS)).astype(np.int64)
-    nearest = np.full((height, width), -1, np.int32)
-    distance = np.full((height, width), np.inf, np.float32)
-    _walls.near(*segments(edges, width, height), _REACH * width / columns, distance, nearest)
+    nearest = walls.nearest(edges, width, height, _REACH * width / columns)
     chain_of = np.empty(len(edges.edges), np.int64)
     for number, chain in enumerate(chains):
         chain_of[chain] = number

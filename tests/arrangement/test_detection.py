@@ -2,13 +2,10 @@
 
 import numpy as np
 import pytest
-import skimage.data
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from penink_cli.arrangement import detection
 from penink_cli.arrangement.detection import detect_edges
-from tests.benchmarks._scenes import random_scene
 from tests.geometry.crossings import crossings
 
 
@@ -75,32 +72,3 @@ def test_edges_never_cross(seed, high, tolerance):
     grey = random.random((random.integers(3, 40), random.integers(3, 40)))
     edges = detect_edges(grey, sigma=0.6, high=high, tolerance=tolerance, min_length=2)
     assert not crossings(edges)
-
-
-def strengths_from_elsewhere(grey, monkeypatch):
-    """Edges whose strength is, by more than .02, none of the steps of edge points around their ends; and all edges."""
-    seen = {}
-    arrange = detection._arrange
-
-    def noted(points, chains, joints, tolerance, steepness, settle):
-        seen.update(points=points, step=points.magnitude / steepness)
-        return arrange(points, chains, joints, tolerance, steepness, settle)
-
-    monkeypatch.setattr(detection, "_arrange", noted)
-    edges = detection.detect_edges(grey)
-    monkeypatch.setattr(detection, "_arrange", arrange)
-    points, step = seen["points"].position, np.clip(seen["step"], 0, 1)
-    far = 0
-    for (a, b), strength in zip(edges.vertices[edges.edges], edges.strength):
-        near = np.minimum(np.hypot(*(points - a).T), np.hypot(*(points - b).T)) < 6
-        far += not np.any(np.abs(step[near] - strength) <= 0.02)
-    return far, len(edges.edges)
-
-
-def test_a_strength_is_measured_where_the_edge_is(monkeypatch):
-    """Vertices that settling puts in take the names of edge points not in use, not their steps."""
-    crop = skimage.data.camera()[60:260, 150:350].astype(np.float32) / 255
-    found = [strengths_from_elsewhere(crop, monkeypatch)]
-    for seed in range(20):
-        found.append(strengths_from_elsewhere(random_scene(seed).photo(0.6, 1.0, seed).astype(np.float32), monkeypatch))
-    assert sum(far for far, _ in found) == 0 and sum(count for _, count in found) > 2000

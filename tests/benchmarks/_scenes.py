@@ -148,3 +148,10 @@ def _apart(shape, other):
     if not len(close):
         return True
     return bool(len(crossings)) and cKDTree(crossings).query(close)[0].max() < 12
+
+
+def true_steps(scene, edges):
+    """(m,) whether a true outline is within a pixel of each edge's middle, and (m,) the grey step across it."""
+    outline, step = scene.curves()
+    away, which = cKDTree(outline).query(edges.vertices[edges.edges].mean(axis=1))
+    return away < 1, step[which]

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from scipy.ndimage import gaussian_filter
 
+from penink_cli.geometry.walls import walls
 from penink_cli.ground.model import EdgeList
-from penink_cli.reconstruction._compiled import walls as _walls
-from penink_cli.reconstruction.extraction import extract_samples, segments
+from penink_cli.reconstruction.extraction import extract_samples
 
 
 def edge_at(x, width=32, height=32):
@@ -46,17 +46,17 @@ def test_without_edges_the_picture_is_its_own_sample():
     assert np.array_equal(extract_samples(grey, EdgeList(7, 5)), grey)
 
 
-def slow_reach(walls, i, j, reach):
+def slow_reach(met, i, j, reach):
     """The pixels that a walk from (i, j) comes to within reach along each axis, one step at a time."""
-    height, width = walls.shape
+    height, width = met.shape
     reached, waiting = {(i, j)}, [(i, j)]
     while waiting:
         y, x = waiting.pop()
         for ny, nx, open_ in (
-            (y, x + 1, not walls[y, x] & 1),
-            (y, x - 1, x > 0 and not walls[y, x - 1] & 1),
-            (y + 1, x, not walls[y, x] & 2),
-            (y - 1, x, y > 0 and not walls[y - 1, x] & 2),
+            (y, x + 1, not met[y, x] & 1),
+            (y, x - 1, x > 0 and not met[y, x - 1] & 1),
+            (y + 1, x, not met[y, x] & 2),
+            (y - 1, x, y > 0 and not met[y - 1, x] & 2),
         ):
             inside = 0 <= ny < height and 0 <= nx < width and abs(ny - i) <= reach and abs(nx - j) <= reach
             if open_ and inside and (ny, nx) not in reached:
@@ -75,12 +75,11 @@ def slow_samples(grey, edges, margin):
         d = q - p
         t = np.clip(((x - p[0]) * d[0] + (y - p[1]) * d[1]) / (d @ d), 0, 1)
         distance = np.minimum(distance, np.hypot(x - p[0] - t * d[0], y - p[1] - t * d[1]))
-    walls = np.zeros(grey.shape, np.uint8)
-    _walls.block(*segments(edges, width, height), walls)
+    met = walls(edges, width, height)
     out = grey.copy()
     for i, j in zip(*np.nonzero(distance <= margin)):
         for reach in (5, 10, 20, 24):
-            at = np.array([k for k in slow_reach(walls, i, j, reach) if distance[k] > margin])
+            at = np.array([k for k in slow_reach(met, i, j, reach) if distance[k] > margin])
             if len(at):
                 break
         else:

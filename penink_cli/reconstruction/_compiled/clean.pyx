@@ -2,10 +2,11 @@
 """Compiled: what a pixel can reach without crossing an edge, and values fitted to that. See extraction.py.
 
 The pixels that a walk reaches are kept as bits, a row of the window around it in one word, and so are
-the steps that are open. A flood of words takes a fifth of the time of a queue of pixels.
+the steps that are open.
 """
 
 from libc.math cimport floor
+from penink_cli.geometry._compiled.flood cimport flood as flow
 from penink_cli.ground._compiled.real cimport exponential
 from penink_cli.reconstruction._compiled.scene cimport side_of_query, side_of_vertex
 
@@ -34,34 +35,18 @@ cdef class Ground:
 
     cdef void flood(self, int i, int j, int reach, unsigned long long* seen) noexcept nogil:
         """Spread the bits of `seen`, rows i − reach … of columns j − reach …, over all that they reach there."""
-        cdef int r, k, row, sweep
-        cdef unsigned long long s
+        cdef int r, row
         cdef unsigned long long[49] right, down
         cdef int side = 2 * reach + 1
         cdef int first = max(0, reach - i)
         cdef int last = min(side, self.height - i + reach)
-        cdef bint changed = True
         cdef unsigned long long one = 1
         cdef unsigned long long inside = (one << side) - 1
         for r in range(first, last):
             row = i - reach + r
             right[r] = _bits(&self.right[row, 0], j - reach) & (inside >> 1)
             down[r] = _bits(&self.down[row, 0], j - reach) & inside
-        while changed:
-            changed = False
-            for sweep in range(2):
-                for k in range(first, last):
-                    r = k if sweep == 0 else first + last - 1 - k
-                    s = seen[r]
-                    if r > first:
-                        s |= seen[r - 1] & down[r - 1]
-                    if r + 1 < last:
-                        s |= seen[r + 1] & down[r]
-                    if s:
-                        s = _along(s, right[r], side)
-                    if s != seen[r]:
-                        seen[r] = s
-                        changed = True
+        flow(seen, right, down, first, last, side)
 
 
 cdef inline unsigned long long _bits(unsigned long long* words, int x) noexcept nogil:
@@ -72,22 +57,6 @@ cdef inline unsigned long long _bits(unsigned long long* words, int x) noexcept 
     if shift == 0:
         return words[k]
     return (words[k] >> shift) | (words[k + 1] << (64 - shift))
-
-
-cdef inline unsigned long long _along(unsigned long long s, unsigned long long right, int side) noexcept nogil:
-    """Spread bits along a row both ways, in steps of 1, 2, 4 … columns over the open ones (Kogge and Stone)."""
-    cdef unsigned long long onward = right << 1
-    cdef unsigned long long back = right
-    cdef int step = 1
-    cdef unsigned long long a = s
-    cdef unsigned long long b = s
-    while step < side:
-        a |= onward & (a << step)
-        b |= back & (b >> step)
-        onward &= onward << step
-        back &= back >> step
-        step *= 2
-    return a | b
 
 
 cdef bint _plane(
