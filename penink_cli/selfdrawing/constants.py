@@ -21,6 +21,7 @@ OTHERS: dict[str, Any] = {
     "MOST_TONE": engraving.MOST, "CLOSED": engraving.CLOSED,
     "LEAST_TONE": engraving.LEAST_TONE, "TAPER_PT": engraving.TAPER_PT, "TAPER_SHARE": engraving.TAPER_SHARE,
     "TIP_PT": engraving.TIP_PT, "BLUNT": engraving.BLUNT, "WAVER_PT": engraving.WAVER_PT,
+    "CROSS_ANGLE": engraving.CROSS_ANGLE,
     # dashes: least length, and the shortest and the longest stretch of line that holds one
     "DASH_PT": 3.0, "PERIOD_PT": 11.0, "LONGEST_PERIOD_PT": 40.0,
     # every second line leaves off between these tones, in parts of that of the finest lines

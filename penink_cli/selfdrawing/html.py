@@ -97,6 +97,7 @@ def _engraving(kind: Engraving | None) -> Any:
     return {
         "spacing": kind.spacing_pt, "finest": kind.finest_pt, "angle": kind.angle, "centre": kind.centre,
         "waver": kind.waver, "blunt": kind.blunt, "lines": kind.lines,
+        "crosses": kind.crosses,
     }  # fmt: skip
 
 

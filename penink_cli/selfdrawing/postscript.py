@@ -103,7 +103,7 @@ def _engraving(kind: Engraving | None) -> str:
     middle = "null null" if kind.centre is None else _row(kind.centre)
     spacing = -kind.lines if kind.lines else kind.spacing_pt
     numbers = _row((spacing, kind.finest_pt, kind.angle))
-    return f"[ {numbers} {middle} {plain(kind.waver, 4)} {_bool(kind.blunt)} ]"
+    return f"[ {numbers} {middle} {plain(kind.waver, 4)} {_bool(kind.blunt)} {plain(kind.crosses, 4)} ]"
 
 
 def _bool(value: bool) -> str:

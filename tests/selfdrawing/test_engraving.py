@@ -70,6 +70,25 @@ def test_what_is_black_is_solid(tmp_path):
     assert within(crossed) < 0.995
 
 
+@pytest.mark.parametrize("field", [None, Directions(np.ones((4, 4)), np.zeros((4, 4)), np.ones((4, 4)))])
+def test_a_second_set_crosses_the_first(field, tmp_path):
+    texture = find_texture("engraving" if field else "engraving-straight")
+    assert texture.engraving is not None
+    samples = GreyImage(np.full((24, 24), round(0.3 * 63), np.uint8), 63)
+    drawn = []
+    for crosses in (0.4, 1.0):
+        kind = replace(texture, engraving=replace(texture.engraving, crosses=crosses, angle=0.0))
+        picture = Illustration(144, 144, (Layer(samples, None, kind, levels=64, directions=field),))
+        drawn.append(
+            [by_render(picture), by_page(picture, tmp_path)] + ([] if field else [by_printer(picture, tmp_path)])
+        )
+    for crossed, once in zip(*drawn):
+        assert seen(crossed).mean() == pytest.approx(1 - 19 / 63, abs=0.015)
+        # a line across: ink where lines run level and leave white between them
+        bare = [(tone[200:-200, 200:-200].mean(axis=1) < 0.2).mean() for tone in (crossed, once)]
+        assert bare[0] == 0 and bare[1] > 0.1
+
+
 def strokes(text: str) -> list[np.ndarray]:
     return [np.array(d.replace("z", "").replace("h.001", "").split(), float).reshape(-1, 2) * 72 / 25.4
             for d in re.findall(r' d="M([^"]*)"', text)]  # fmt: skip

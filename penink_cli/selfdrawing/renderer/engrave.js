@@ -2,18 +2,18 @@
 // same straight lines and rings).
 
 // The middle lines of an engraving where the window needs them: {xs, ys, wide}, wide being how far lines are from one another
-// there, in parts of the spacing.
-function tracksOf(sheet, every) {
+// there, in parts of the spacing. across: those of the second set.
+function tracksOf(sheet, every, across) {
   const {layer, width, height, blocks, unit} = sheet, {engraving, field} = layer, out = [];
   const spacing = engraving.lines ? width / engraving.lines : engraving.spacing;
   if (field) {
     // every second line is one on which the phase is 0, the others are half way
     const density = new Float32Array(sheet.tone.length).fill(1 / spacing / 2), walls = wallsOf(sheet);
-    linesAlong(sheet, 0, 0, density, null, every, walls, Math.max(spacing, 3), [0, 0.5]).forEach((lines, odd) => { for (const [xs, ys] of lines) out.push({xs, ys, odd}); });
+    linesAlong(sheet, +across, across ? CROSS_ANGLE : 0, density, null, every, walls, Math.max(spacing, 3), [0, 0.5]).forEach((lines, odd) => { for (const [xs, ys] of lines) out.push({xs, ys, odd}); });
     return {tracks: out, spacing};
   }
   const left = blocks.x0 / unit - 2, top = blocks.y0 / unit - 2, right = blocks.x1 / unit + 2, bottom = blocks.y1 / unit + 2;
-  if (engraving.centre) {
+  if (engraving.centre && !across) {
     const cx = engraving.centre[0] * width, cy = engraving.centre[1] * height, nearX = clamp(cx, left, right), nearY = clamp(cy, top, bottom);
     const near = far(nearX - cx, nearY - cy), farthest = Math.max(...[left, right].map(x => Math.max(far(x - cx, top - cy), far(x - cx, bottom - cy))));
     // the angles at which the window is seen from the centre
@@ -32,7 +32,7 @@ function tracksOf(sheet, every) {
     }
     return {tracks: out, spacing};
   }
-  const c = Math.cos(engraving.angle * Math.PI / 180), s = Math.sin(engraving.angle * Math.PI / 180), us = [], vs = [], {waver} = engraving, turn = 2 * Math.PI / GRAIN;
+  const angle = (engraving.angle + (across ? CROSS_ANGLE : 0)) * Math.PI / 180, c = Math.cos(angle), s = Math.sin(angle), us = [], vs = [], {waver} = engraving, turn = 2 * Math.PI / GRAIN;
   for (const [x, y] of [[left, top], [right, top], [left, bottom], [right, bottom]]) { us.push(x * c + y * s); vs.push(y * c - x * s); }
   const away = waver * WAVER_PT + spacing;
   for (let k = Math.floor((Math.min(...vs) - away) / spacing); k * spacing < Math.max(...vs) + away; k++) {
@@ -64,15 +64,25 @@ function engrave(sheet, every, fill) {
     lack.forEach((more, k) => { blocks.bare[k] *= 1 - sheet.own[k]; });
     sheet.correct(lack);
   }
-  const {tracks, spacing} = tracksOf(sheet, every), walls = wallsOf(sheet);
-  for (const track of tracks) {
-    cutAtWalls(sheet, track, walls);
-    const {cuts} = track;
-    for (let from = 0, upto; from < cuts.length; from = upto + 1) {
-      for (upto = from; upto + 1 < cuts.length && cuts[upto] < 0;) upto++;
-      stretch(sheet, track, spacing, from, upto, (xs, ys) => fill(layer, xs, ys));
+  for (const across of layer.engraving.crosses < 1 ? [false, true] : [false]) {
+    const {tracks, spacing} = tracksOf(sheet, every, across), walls = wallsOf(sheet);
+    for (const track of tracks) {
+      track.across = across;
+      cutAtWalls(sheet, track, walls);
+      const {cuts} = track;
+      for (let from = 0, upto; from < cuts.length; from = upto + 1) {
+        for (upto = from; upto + 1 < cuts.length && cuts[upto] < 0;) upto++;
+        stretch(sheet, track, spacing, from, upto, (xs, ys) => fill(layer, xs, ys));
+      }
     }
   }
+}
+
+// The part of a tone that is a set's: above the tone from which on they cross, both grow.
+function partOf(t, crosses, across) {
+  if (t <= crosses) return across ? 0 : t;
+  const first = crosses + (t - crosses) / 2;
+  return across ? 1 - (1 - t) / Math.max(1e-3, 1 - first) : first;
 }
 
 // Where walls cut a line between one point and the next, kept with it.
@@ -96,7 +106,7 @@ function stretch(sheet, track, spacing, from, upto, fill) {
   if (many < 2) return;
   const got = new Float64Array(many), widths = new Float64Array(many), drawn = new Uint8Array(many), added = gain * pen;
   for (let i = 0; i < many; i++)
-    got[i] = tone[clamp(Math.floor(ys[from + i] * perY) - y0, 0, tall - 1) * across + clamp(Math.floor(xs[from + i] * perX) - x0, 0, across - 1)] / 255;
+    got[i] = partOf(tone[clamp(Math.floor(ys[from + i] * perY) - y0, 0, tall - 1) * across + clamp(Math.floor(xs[from + i] * perX) - x0, 0, across - 1)] / 255, engraving.crosses, track.across);
   for (let round = 0; round < 2; round++) for (let i = 0, before = got[0]; i < many; i++) {
     const here = got[i];
     got[i] = (before + 2 * here + got[Math.min(i + 1, many - 1)]) / 4;
