@@ -25,4 +25,49 @@ static inline void add_scaled(double *restrict out, const double *restrict in, d
     for (; k < count; k++) out[k] += weight * in[k];
 }
 
+/* out += weight · in, and with it more += other · in. */
+static inline void add_scaled_twice(
+    double *restrict out, double *restrict more, const double *restrict in, double weight, double other, int count
+) {
+    int k = 0;
+    for (; k + 2 <= count; k += 2) {
+        penink_two v = *(const penink_two *)(in + k);
+        *(penink_two *)(out + k) += weight * v;
+        *(penink_two *)(more + k) += other * v;
+    }
+    for (; k < count; k++) {
+        out[k] += weight * in[k];
+        more[k] += other * in[k];
+    }
+}
+
+/* out = weights[0] · rows[0] + weights[1] · rows[1] + … over width numbers, in that order; 0 of no rows. */
+static inline void weighted_rows(double *restrict out, const double *const *rows, const double *weights, int n, int width) {
+    int k = 0, d;
+    for (; k + 8 <= width; k += 8) { /* four sums that stay in registers */
+        penink_two a = {0.0, 0.0}, b = a, c = a, e = a;
+        for (d = 0; d < n; d++) {
+            const penink_two *row = (const penink_two *)(rows[d] + k);
+            a += weights[d] * row[0];
+            b += weights[d] * row[1];
+            c += weights[d] * row[2];
+            e += weights[d] * row[3];
+        }
+        *(penink_two *)(out + k) = a;
+        *(penink_two *)(out + k + 2) = b;
+        *(penink_two *)(out + k + 4) = c;
+        *(penink_two *)(out + k + 6) = e;
+    }
+    for (; k + 2 <= width; k += 2) {
+        penink_two a = {0.0, 0.0};
+        for (d = 0; d < n; d++) a += weights[d] * *(const penink_two *)(rows[d] + k);
+        *(penink_two *)(out + k) = a;
+    }
+    for (; k < width; k++) {
+        double a = 0.0;
+        for (d = 0; d < n; d++) a += weights[d] * rows[d][k];
+        out[k] = a;
+    }
+}
+
 #endif

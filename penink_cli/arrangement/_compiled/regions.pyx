@@ -8,7 +8,7 @@ import numpy as np
 from libc.math cimport ceil
 from libc.string cimport memmove, memset
 from penink_cli.arrangement._compiled.place cimport MOST_EDGES, Place
-from penink_cli.arrangement._compiled.products cimport add_scaled
+from penink_cli.arrangement._compiled.products cimport Row, add_scaled, weighted_rows
 
 SIDE, FINENESS = MOST_SIDE, FINE  # of the widest window, pixels; points a pixel
 
@@ -147,10 +147,10 @@ cdef class Regions:
         cdef int j, k, run
         cdef int wide = self.wide
         cdef double everything = self.sums[self.sums.shape[0] - 1]
+        cdef bint more
         cdef double* row
         cdef const double* low
         cdef const double* high
-        cdef double[MOST_SIDE] part
         for k in range(self.regions):
             self.present[i, k] = 0
         low = NULL
@@ -158,22 +158,26 @@ cdef class Regions:
             k = self.region[run]
             row = &self.across[i, k, 0]
             high = self.seen_left_of(self.start[run + 1]) if run + 1 < self.end[i] else NULL
+            more = self.present[i, k]
+            self.present[i, k] = 1
             if low == NULL and high == NULL:
                 for j in range(wide):
-                    part[j] = everything
+                    row[j] = everything
             elif low == NULL:
                 for j in range(wide):
-                    part[j] = high[j]
+                    row[j] = high[j]
+            elif high == NULL and more:
+                for j in range(wide):
+                    row[j] += everything - low[j]
             elif high == NULL:
                 for j in range(wide):
-                    part[j] = everything - low[j]
+                    row[j] = everything - low[j]
+            elif more:
+                for j in range(wide):
+                    row[j] += high[j] - low[j]
             else:
                 for j in range(wide):
-                    part[j] = high[j] - low[j]
-            if not self.present[i, k]:
-                memset(row, 0, wide * sizeof(double))
-                self.present[i, k] = 1
-            add_scaled(row, part, 1.0, wide)
+                    row[j] = high[j] - low[j]
             low = high
 
     cdef inline const double* seen_left_of(self, int column) noexcept nogil:
@@ -185,7 +189,9 @@ cdef class Regions:
 
         All that a pixel sees is 1, so that the first region is what the others leave.
         """
-        cdef int i, j, k, d, at, first
+        cdef int i, j, k, d, n, at, first
+        cdef Row[MOST_POINTS] rows
+        cdef double[MOST_POINTS] weights
         cdef double* plane
         cdef double* rest
         cdef int reach = <int>(self.taps.shape[0] // 2)
@@ -201,11 +207,13 @@ cdef class Regions:
                 rest[j] = 1.0
             for k in range(1, regions):
                 plane = &self.design[k, i * wide]
-                memset(plane, 0, wide * sizeof(double))
+                n = 0
                 for d in range(-reach, reach + 1):
                     at = min(high - 1, max(0, FINE * (self.first_row + i) + FINE // 2 + d))
                     if self.present[at, k]:
-                        add_scaled(plane, &self.across[at, k, 0], self.taps[d + reach], wide)
+                        rows[n], weights[n] = &self.across[at, k, 0], self.taps[d + reach]
+                        n += 1
+                weighted_rows(plane, rows, weights, n, wide)
                 add_scaled(rest, plane, -1.0, wide)
             plane = &self.design[regions, i * wide]
             rest = &self.design[regions + 1, i * wide]

@@ -7,7 +7,7 @@ See junctions.py.
 import numpy as np
 from libc.math cimport INFINITY, fabs, sqrt
 from penink_cli.arrangement._compiled.place cimport Place
-from penink_cli.arrangement._compiled.products cimport add_scaled, dot
+from penink_cli.arrangement._compiled.products cimport add_scaled, add_scaled_twice, dot
 from libc.string cimport memcpy, memset
 from penink_cli.arrangement._compiled.regions cimport MOST_MOVED, MOST_PIXELS, MOST_SIDE, MOST_UNKNOWN, Regions
 
@@ -213,8 +213,7 @@ cdef class Window(Regions):
                 for i in range(box[0], box[1]):
                     v = weight * self.bell(fabs(i + 0.5 - y))
                     p = (i - self.first_row) * self.wide + box[2] - self.first_column
-                    add_scaled(&self.ends[0, p], over, v * (1 - t), box[3] - box[2])
-                    add_scaled(&self.ends[1, p], over, v * t, box[3] - box[2])
+                    add_scaled_twice(&self.ends[0, p], &self.ends[1, p], over, v * (1 - t), v * t, box[3] - box[2])
             if first >= last:
                 continue
             first, last = (first - self.first_row) * self.wide, (last - self.first_row) * self.wide
