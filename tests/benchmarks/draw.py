@@ -16,16 +16,17 @@ import tempfile
 import time
 from pathlib import Path
 
-import numpy as np
-import skimage.data
-from PIL import Image
-
 SIZES = {"half": (900, 600), "two": (1732, 1155), "twelve": (4242, 2828)}
 DRAWINGS = (("true", ".ps"), ("house", ".ps"), ("house", ".penink"))
 
 
 def portrait(path, size):
     """A JPEG photograph of that size."""
+    # here, for a call of `draw` that is timed pays for no import of ours
+    import numpy as np
+    import skimage.data
+    from PIL import Image
+
     face = Image.fromarray(skimage.data.astronaut()[85:427])
     values = np.asarray(face.resize(size, Image.Resampling.BICUBIC), float)
     noise = np.random.default_rng(0).normal(0, 3, values.shape)
