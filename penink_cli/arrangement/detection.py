@@ -25,7 +25,7 @@ from penink_cli.ground.model import EdgeList, Floats
 
 TOLERANCE = 0.3
 MIN_LENGTH = 6.0
-TELLING = 13.0  # the median of grass and fur is 6, of outlines over 20
+TELLING = 13.0  # least `_telling` score of a chain; the median of grass and fur is 6, of outlines over 20
 _ALONE = 2.0  # times as steep as what is around: texture reaches 1.4 to 2, letters 2.5 to 3.3
 _BRIDGE = 0.4  # of that is enough for a chain that leads from a telling chain to another, or to the frame
 _LEAST_LENS = 0.32  # pixels

@@ -9,11 +9,11 @@ from penink_cli.ground import exact
 from penink_cli.ground.model import EdgeList, Floats
 
 LEAST_BLUR, MOST_BLUR = 0.4, 3.0
-USUAL_BLUR = 0.5  # pixels: a photo with too few edges to tell
-_LOOKS = 20_000  # places on edges: more change the median by less than 0.01
-_SMOOTH = 0.7
-_REACH = 5
-_FEW = 20
+USUAL_BLUR = 0.5  # pixels: of a photo with too few edges to measure
+_LOOKS = 20_000  # places on edges that are measured; more change the median by less than 0.01 pixels
+_SMOOTH = 0.7  # σ, pixels, of the Gaussian along the edge under which slopes are taken
+_REACH = 5  # pixels: nearer to the frame no slope is taken
+_FEW = 20  # places; with fewer nothing is measured
 # Variance of what the measurement itself adds: the smoothing, the pixel's area and the difference of neighbours.
 _OWN = 1 / 12 + 0.25
 

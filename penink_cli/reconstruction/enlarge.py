@@ -34,7 +34,7 @@ Window = tuple[int, int, int, int]
 Rows = npt.NDArray[Any]
 
 BAND = 1 << 20  # pixels of one band: small enough to be done soon, large enough to be worth a task
-SMALL = 1 << 22  # pixels without edges: they are done in less time than a second thread takes to start and to worker on
+SMALL = 1 << 22  # pixels without edges that one thread reconstructs sooner than a second one would have started
 
 
 def enlarge(

@@ -6,10 +6,9 @@ samples taken with care, the samples minimise
 
     ‖B R s − photo‖² + λ ‖s − s₀‖².
 
-Without B the fit would make samples that are wrong and only look good beside a blurred photo.
-Away from edges R is separable, and so is the fit: two banded systems solved once (`fit_plain`).
-Where edges are near, blocks of samples are solved by conjugate gradients, each with a halo that
-is thrown away: a sample's say fades within three of its neighbours.
+Without B the samples would be as blurred as the photo. Away from edges R is separable, and so is the fit: two banded
+systems solved once (`fit_plain`). Where edges are near, blocks of samples are solved by conjugate gradients. Each block
+is solved with a halo that is then thrown away: a sample's influence fades within three of its neighbours.
 """
 
 from __future__ import annotations
@@ -35,15 +34,15 @@ from penink_cli.reconstruction.paths import Paths, spill
 Grey32 = npt.NDArray[np.float32]
 
 AREA = 2  # points along each axis that stand for a pixel's area
-POINT = 1  # and for a sample, which is the value at a place
-HOLD = 0.2  # λ: between 0.05 and 1 the result hardly changes; it holds samples that no pixel tells of
-_STEPS = 5  # of conjugate gradients: four reach the end within 0.02 dB
-_HALO = 3
-_BLOCK_PX = 128
+POINT = 1  # the same for a sample, which is the value at a place
+HOLD = 0.2  # λ: holds samples that no pixel depends on; between 0.05 and 1 the result hardly changes
+_STEPS = 5  # of conjugate gradients; four come within 0.02 dB of the end
+_HALO = 3  # samples around a block that are solved with it and thrown away
+_BLOCK_PX = 128  # pixels of the photo along a block's side
 _NEAR = 3.0  # samples: an edge farther away changes no pixel that these samples are fitted to
-_SPAN = 5
-_CROWDED = 8  # edges a sample, in a block: more say nothing that samples could be fitted to, and cost by their square
-_PLAIN_HOLD = 0.01
+_SPAN = 5  # samples along each axis that a pixel depends on
+_CROWDED = 8  # edges a sample, in a block: among more no sample is determined, and the cost grows by their square
+_PLAIN_HOLD = 0.01  # λ of the plain fit, away from edges
 
 
 def blur_kernel(blur: float) -> Floats:

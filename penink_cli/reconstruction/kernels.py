@@ -12,7 +12,8 @@ from penink_cli.ground.model import Floats
 from penink_cli.reconstruction._compiled import kernels as _kernels
 
 KERNELS = ("cubic", "bspline")
-#: Below the first sum of cubic weights the B-spline is blended in, below the second, of its own, plain convolution.
+#: Of the weights that edges leave (equation 5's denominator): the sum of the cubic's below which the B-spline is
+#: blended in, and the sum of the B-spline's below which plain convolution is.
 T1, T2 = 0.5, 1e-4
 
 

@@ -17,11 +17,11 @@ from penink_cli.reconstruction.shrinking import shrunk
 
 FITS = ("none", "lsq")
 
-_NEAR = 2.25  # samples: at 2.1 a plain fit still tells 3 % of the step across an edge, from here on 1 %
-_ENOUGH = 12  # pixels a sample, along each axis: a fit to more changes nothing (0.01 dB) and takes the longer
-_CELL = 4.0
-_BAND_ROWS = 16
-_SPREAD, _STIFFNESS = 0.28, 0.5  # of the factor: broader planes smooth away what the grid could hold
+_NEAR = 2.25  # samples: nearer to an edge planes are fitted; there a plain fit mixes in 1 % of the step, at 2.1 3 %
+_ENOUGH = 12  # pixels a sample along each axis that are fitted to; more change 0.01 dB and take longer
+_CELL = 4.0  # pixels: the cells of the index of edges
+_BAND_ROWS = 16  # rows of samples that are a thread's task
+_SPREAD, _STIFFNESS = 0.28, 0.5  # in parts of the factor; broader planes smooth away what the grid could hold
 
 
 def reduce(
