@@ -118,7 +118,7 @@ def _composed(
     report(f"black point {black:.3f}, white point {white:.3f}")
     grey = np.clip((grey - np.float32(black)) * np.float32(1 / (white - black)), 0, 1)
     noise = noise_level(grey)
-    broad = relief.base(grey, pt, threads)
+    broad, carved = relief.base(grey, pt, threads)
     detail = grey - broad
     weight = _weight(grey, noise, pt, threads)
     upto = exposure.histogram(broad, weight if fade is None else weight * fade)
@@ -126,7 +126,7 @@ def _composed(
     exposed = looked_up(broad, table)
     # slopes belong to the middle of their steps
     slopes = looked_up(broad, slope, 0.5 / exposure.STEPS, 1 - 0.5 / exposure.STEPS)
-    result = relief.raised(detail, exposed, slopes, choice.detail, noise, pt, threads)
+    result = relief.raised(detail, exposed, slopes, carved * (exposed - broad), choice.detail, noise, pt, threads)
     result = np.clip((result - np.float32(_INK)) * np.float32(1 / (_PAPER - _INK)), 0, 1)
     paper = int((grey > _PAGE_PAPER).sum()) / grey.size
     if paper > _PAGE:

@@ -13,15 +13,23 @@ from penink_cli.composition.filters import Picture, blurred, enlarged, looked_up
 _RADIUS_PT = 4.0  # of the Gaussian that the guided filter gathers with
 _FLAT = 0.045  # a local standard deviation of grey that is detail; what is well above is an edge
 _GRID_PT = 0.75  # of the base
+# Relief: structure between these Gaussians' σ that is everywhere around, and not on one edge, as coins, fur, leaves are.
+# Where it has LEAST of contrast and more, only greater steps belong to the base, up to a deviation of EDGES from FULL on.
+_STRUCTURE_PT, _AROUND_PT, _MOST, _LEAST, _FULL, _EDGES = (1.0, 3.0), 8.0, 0.06, 0.010, 0.024, 0.10
 _FINE_PT, _FINE_SHARE = 0.5, 0.4  # what is finer a pen cannot show, and so much of it is kept
 _LIMIT = 0.4  # detail is not raised beyond that
 _USUAL, _OFFSET, _POWER, _LESS, _MORE = 0.055, 0.012, 0.4, 0.7, 1.5  # faint detail is raised more than strong
 _GAIN = np.array([round(((_USUAL) / (k / 512 + _OFFSET)) ** _POWER, 9) for k in range(257)]).clip(_LESS, _MORE)
+# What the exposure has lifted there beyond so much is taken back by so much: relief in light tones is lost on the pen; and
+# detail is raised by so much more where so much was lifted.
+_LIFT, _TAKEN_BACK, _CARVED, _LIFTED = 0.08, 0.7, 0.5, 0.25
+# What of the detail lies below BROAD, in parts of what lies above it, where it is grain (grass, gravel), and is raised less.
+_BROAD_PT, _GRAIN, _ALL_GRAIN, _GRAIN_LEFT = 1.2, 0.6, 0.95, 0.4
 _RELIEF, _RELIEF_RANGE, _RELIEF_INK, _LIGHT = 0.045, 0.05, 0.6, 0.60  # where detail is that strong, lights come down
 
 
-def base(grey: Picture, pixels_per_pt: float, threads: int) -> Picture:
-    """Broad tones (h, w) of grey (h, w), sharp at strong edges."""
+def base(grey: Picture, pixels_per_pt: float, threads: int) -> tuple[Picture, Picture]:
+    """Broad tones (h, w) of grey (h, w), sharp at strong edges, and how much each place is in relief, 0 … 1."""
     height, width = grey.shape
     cell = max(1.0, _GRID_PT * pixels_per_pt)
     w, h = max(1, round(width / cell)), max(1, round(height / cell))
@@ -29,18 +37,35 @@ def base(grey: Picture, pixels_per_pt: float, threads: int) -> Picture:
     sigma = _RADIUS_PT * pixels_per_pt * w / width
     mean = blurred(small, sigma, threads)
     variance: Picture = np.maximum(blurred(small * small, sigma, threads) - mean * mean, 0)
-    kept: Picture = variance / (variance + np.float32(_FLAT * _FLAT))
+    relief = _in_relief(small, pixels_per_pt * w / width, threads)
+    flat = np.float32(_FLAT) + np.float32(_EDGES - _FLAT) * relief
+    kept: Picture = variance / (variance + flat * flat)
     rest = mean - kept * mean
     slope, offset = (enlarged(blurred(v, sigma, threads), width, height, threads) for v in (kept, rest))
-    return np.clip(slope * grey + offset, 0, 1)
+    return np.clip(slope * grey + offset, 0, 1), enlarged(relief, width, height, threads)
+
+
+def _in_relief(grey: Picture, pt: float, threads: int) -> Picture:
+    """How much each place of grey (h, w) is in relief, 0 … 1; pt: pixels a point.
+
+    Were relief left in the base, the exposure would flatten it with the lights. Fourth roots are averaged: one strong
+    edge fills little of its surroundings and so counts for next to nothing, however strong it is.
+    """
+    fine, broad = _STRUCTURE_PT
+    there = np.abs(blurred(grey, fine * pt, threads) - blurred(grey, broad * pt, threads))
+    root = blurred(np.sqrt(np.sqrt(np.minimum(there, np.float32(_MOST)))), _AROUND_PT * pt, threads)
+    root *= root
+    share: Picture = np.clip((root * root - np.float32(_LEAST)) / np.float32(_FULL - _LEAST), 0, 1)
+    return share
 
 
 def raised(
-    detail: Picture, lights: Picture, slope: Picture, gain: float, noise: float, pixels_per_pt: float, threads: int
-) -> Picture:
+    detail: Picture, lights: Picture, slope: Picture, lifted: Picture, gain: float, noise: float, pixels_per_pt: float,
+    threads: int,
+) -> Picture:  # fmt: skip
     """The base `lights` (h, w) with the detail upon it.
 
-    slope: that of the exposure's curve at each pixel, which has raised or flattened the base.
+    slope: that of the exposure's curve at each pixel, which has raised or flattened the base. lifted: by how much relief is lighter for it.
     gain: of detail of usual strength. noise: its standard deviation, grey.
     """
     pt = pixels_per_pt
@@ -56,8 +81,13 @@ def raised(
             return values
         return values * np.clip((spread(values, 1.5) - np.float32(level)) / np.float32(2 * level), 0.15, 1)
 
-    each = looked_up(spread(middle, 6.0), _GAIN, 0.0, 0.5)
-    each *= np.float32(gain) * np.clip(slope, 0.8, 1.4)
+    strong = spread(middle, 6.0)
+    each = looked_up(strong, _GAIN, 0.0, 0.5)
+    each *= np.float32(gain) * np.clip(slope, 0.8, 1.4) * (1 + np.float32(_CARVED) * np.clip(lifted * np.float32(1 / _LIFTED), 0, 1))
+    lights = lights - np.float32(_TAKEN_BACK) * np.maximum(0, lifted - np.float32(_LIFT))
+    broad = blurred(middle, _BROAD_PT * pt, threads)
+    grain = spread(middle - broad, 6.0) / (spread(broad, 6.0) + np.float32(0.004))
+    each *= 1 - np.float32(1 - _GRAIN_LEFT) * np.clip((grain - np.float32(_GRAIN)) / np.float32(_ALL_GRAIN - _GRAIN), 0, 1)
     drawn = _limited(each * guard(middle, 0.5 * noise)) + np.float32(_FINE_SHARE) * each * guard(fine, noise)
     return _with_room(lights, drawn, pt, threads)
 
