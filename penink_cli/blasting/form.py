@@ -49,12 +49,13 @@ class Laid:
     """What the lines of one layer were made of.
 
     density: lines a point at each node. phase: turns there. active: (rows, columns) the cells of the sheet in which the
-    layer covers more than `ACTIVE`.
+    layer covers more than `ACTIVE`. near: the same, and what is within a few cells of them.
     """
 
     density: Plane
     phase: Plane
     active: npt.NDArray[np.bool_]
+    near: npt.NDArray[np.bool_]
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,7 +139,8 @@ class Form:
             density = np.minimum(density, np.float32(1.0 / layer.spacing_pt))
         field = Field(self.nodes, nx, ny, density)
         phase = solve(field, self._walls, seed * 7 + 1, sheet.each)
-        self._laid[i] = Laid(density, phase, coverage > ACTIVE)
+        active = coverage > ACTIVE
+        self._laid[i] = Laid(density, phase, active, _grown(active))
         lines = self._lines(field, phase, 0.0, _grown(cover > RAGGED[0]), seed)
         thresholds = np.random.default_rng([seed, 8]).uniform(*RAGGED, len(lines.ring))
         seen = self._at(cover, lines.points)
@@ -167,6 +169,8 @@ class Form:
         wanted = np.pad(laid.active & (error > 0) & owed, PAD)
         field = Field(self.nodes, *self.normals(i), laid.density)
         lines = self._lines(field, laid.phase, 0.5, _grown(wanted, round(length / 2 / self.nodes.dx)), seed)
+        if i:  # one of a layer that is begun for a small dark thing would stick out on both sides
+            lines, _ = pen_lines.live(lines, self._at(np.pad(laid.near, PAD).astype(np.float32), lines.points) > 0.5)
         due = self._due(i, lines.points, error)
         lines, _ = pen_lines.live(
             lines, self._near(lines, due > least * self._painted(pen) / (2.5066 * SIGMA_PT), length)
