@@ -16,7 +16,7 @@ from penink_cli.ground.masks import distance, labelled
 from penink_cli.ground.model import Floats, Strokes
 
 #: The tone from which on it is black.
-BLACK = 0.96
+BLACK = 0.93
 #: Whether it is black is told by the tone under a Gaussian of σ SMOOTH_PT. Where the tone falls below LIGHT within
 #: FALLS_PT, black ends where half of the fall is done.
 SMOOTH_PT, LIGHT, FALLS_PT = 0.5, 0.6, 1.4
