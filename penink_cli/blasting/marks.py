@@ -7,12 +7,16 @@ leave it pale. Here such a thing is filled, row by row, with short strokes of a 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 
 import numpy as np
+import numpy.typing as npt
 
 from penink_cli.blasting.sheet import Cells, resample
 from penink_cli.ground.masks import distance, labelled
 from penink_cli.ground.model import Floats, Strokes
+
+Mask = npt.NDArray[np.bool_]
 
 #: A thing is where the tone exceeds LEVEL. It reaches CORE somewhere, nothing from NEAR_PT to FAR_PT around it is
 #: darker than PAPER, and no place in it is further than HALF_PT from its border.
@@ -44,28 +48,11 @@ def marks(
         h, w = max(h, round(FINE * height_pt)), max(w, round(FINE * width_pt))
         tone = resample(tone, h, w)
     px = math.sqrt(w * h / (width_pt * height_pt))  # pixels in a point
-    part, boxes = labelled(tone > LEVEL)
     chains: list[Floats] = []
     widths: list[float] = []
     scale = np.array([width_pt / w, height_pt / h])
-    reach = math.ceil(FAR_PT * px) + 1
-    most = 2 * math.ceil(40 * px)
-    for k, (first_row, last_row, first_column, last_column) in enumerate(boxes.tolist(), 1):
-        if last_row - first_row > most or last_column - first_column > most:
-            continue
-        top, left = max(0, first_row - reach), max(0, first_column - reach)
-        window = (slice(top, last_row + reach), slice(left, last_column + reach))
-        mine = part[window] == k
-        around = tone[window]
-        if float(around[mine].max()) < CORE:
-            continue
-        off = distance(~mine) / px
-        others = distance(part[window] == 0) / px  # letters stand close
-        ring = (off >= NEAR_PT) & (off <= FAR_PT) & (others >= NEAR_PT)
-        if ring.any() and float(around[ring].max()) > PAPER:
-            continue
-        if float(distance(np.pad(mine, 1)).max()) / px > HALF_PT:
-            continue
+    for top, left, mine, off in things(tone, px):
+        around = tone[top : top + mine.shape[0], left : left + mine.shape[1]]
         rows, columns = np.nonzero(mine)
         at = (rows + top) * ink.shape[0] // h, (columns + left) * ink.shape[1] // w
         if math.fsum(ink[at].tolist()) > INKED * len(rows):
@@ -84,6 +71,34 @@ def marks(
             continue
         fill(np.where(off <= 1.0, around, 0.0), np.array([left, top]), scale, pen_pt, gain_pt, chains, widths, fixed)
     return Strokes.of(width_pt, height_pt, chains, widths)
+
+
+def things(tone: Floats, px: float) -> Iterator[tuple[int, int, Mask, Floats]]:
+    """Small dark things on bare paper: row and column of a window's corner, what is the thing in it, and how far from it
+    each place of the window lies (points).
+
+    tone: (h, w), px pixels a point.
+    """
+    part, boxes = labelled(tone > LEVEL)
+    reach = math.ceil(FAR_PT * px) + 1
+    most = 2 * math.ceil(40 * px)
+    for k, (first_row, last_row, first_column, last_column) in enumerate(boxes.tolist(), 1):
+        if last_row - first_row > most or last_column - first_column > most:
+            continue
+        top, left = max(0, first_row - reach), max(0, first_column - reach)
+        window = (slice(top, last_row + reach), slice(left, last_column + reach))
+        mine = part[window] == k
+        around = tone[window]
+        if float(around[mine].max()) < CORE:
+            continue
+        off = distance(~mine) / px
+        others = distance(part[window] == 0) / px  # letters stand close
+        ring = (off >= NEAR_PT) & (off <= FAR_PT) & (others >= NEAR_PT)
+        if ring.any() and float(around[ring].max()) > PAPER:
+            continue
+        if float(distance(np.pad(mine, 1)).max()) / px > HALF_PT:
+            continue
+        yield top, left, mine, off
 
 
 def fill(

@@ -3,6 +3,9 @@
 Layers that cross each other in the dark are a grainy net, and strokes that close up leave flecks of white where they
 end. Here the dark is found first: as far as it is black, and where it meets light, up to half way between them. Rows of
 a pen that overlap fill it; hatching begins beside it.
+
+Textures that have a way of their own to be black keep it, save around small light things: what is finer than its
+strokes no texture leaves out.
 """
 
 from __future__ import annotations
@@ -10,13 +13,16 @@ from __future__ import annotations
 import numpy as np
 
 from penink_cli.blasting import marks
+from penink_cli.blasting.light import LightThings
 from penink_cli.blasting.sheet import Cells, resample
 from penink_cli.composition.filters import blurred
 from penink_cli.ground.masks import distance, labelled
 from penink_cli.ground.model import Floats, Strokes
 
-#: The tone from which on it is black.
-BLACK = 0.93
+#: The tone from which on it is black where a texture ends in black, and where one can be as dark as DARKEST itself.
+BLACK, DARKEST = 0.93, 0.97
+#: How far black is filled around small light things.
+BESIDE_PT = 3.0
 #: Whether it is black is told by the tone under a Gaussian of σ SMOOTH_PT. Where the tone falls below LIGHT within
 #: FALLS_PT, black ends where half of the fall is done.
 SMOOTH_PT, LIGHT, FALLS_PT = 0.5, 0.6, 1.4
@@ -27,16 +33,18 @@ PEN_PT = 0.35
 
 
 def solids(
-    tone: Floats, width_pt: float, height_pt: float, pen_pt: float | None, gain_pt: float, ink: Cells
-) -> Strokes:
+    tone: Floats, width_pt: float, height_pt: float, pen_pt: float | None, gain_pt: float, ink: Cells,
+    black: float, light: LightThings, everywhere: bool,
+) -> Strokes:  # fmt: skip
     """Strokes that fill all that is as good as black in the tone (h, w) on a sheet of that size.
 
     pen_pt: the one pen there is, None for one that suits. gain_pt: how much wider the device paints it.
     ink: (rows, columns) what is on the sheet already: what that covers is drawn.
+    black: the tone from which on it is. light: small light things, around which alone it is filled unless `everywhere`.
     """
     h, w = tone.shape
     none = Strokes(width_pt, height_pt)
-    if not (tone > BLACK).any():
+    if not (tone > black).any() or (light.none and not everywhere):
         return none
     fine = max(1.0, marks.FINE * width_pt / w)
     if fine > 1:
@@ -44,10 +52,15 @@ def solids(
         tone = resample(tone, h, w)
     px = w / width_pt
     smooth = blurred(tone.astype(np.float32), SMOOTH_PT * px, 1).astype(np.float64)
-    core = smooth > BLACK
+    core = smooth > black
     falls = (distance(smooth >= LIGHT) < FALLS_PT * px) & (distance(~core) < FALLS_PT * px)
     # how much darker a place is than what black begins with there, half way up or down where it does
-    value = np.where(falls, np.maximum(tone, smooth) - marks.LEVEL, smooth - BLACK) + marks.LEVEL
+    value = np.where(falls, np.maximum(tone, smooth) - marks.LEVEL, smooth - black) + marks.LEVEL
+    if not light.none:
+        near = resample(light.within(FALLS_PT).astype(np.float64), h, w) > 0
+        value = np.where(near & falls, tone, value)  # smoothed, it would be smaller
+    if not everywhere:
+        value = np.where(resample(light.within(BESIDE_PT).astype(np.float64), h, w) > 0.5, value, 0.0)
     part, boxes = labelled(value > marks.LEVEL)
     count = len(boxes) + 1
     at = np.arange(h) * ink.shape[0] // h, np.arange(w) * ink.shape[1] // w

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from penink_cli.blasting import hatching, marks
+from penink_cli.blasting import hatching, marks, solids
+from penink_cli.blasting.light import LightThings
 from penink_cli.blasting.sheet import Cells, Sheet, coverage
 from penink_cli.ground.angles import direction
 from penink_cli.ground.device import MEAN
@@ -18,6 +19,8 @@ from penink_cli.ground.model import Directions, EdgeList, Floats, Strokes, Textu
 MARK_PT = 0.5
 #: Cells of which so much lies within a point of a small dark thing belong to it.
 NEAR_MARK = 0.3
+#: Layers that go so far reach black.
+ALMOST = 0.99
 #: Degrees at which a set of strokes lies where no directions are given.
 ANGLE = -45.0
 
@@ -52,7 +55,7 @@ class Task:
 
 
 class Begun:
-    """A sheet on which the strokes that are there already and small dark things have been drawn.
+    """A sheet on which the strokes that are there already, small dark things and solid black have been drawn.
 
     small: the strokes of those. told: cells (rows, columns) that hatching keeps away from thin things in, or None.
     """
@@ -74,6 +77,20 @@ class Begun:
         if len(self.small):  # nor are they thin things to be drawn along
             near = coverage(self.small, self.sheet.rows, self.sheet.columns, 2.0) > NEAR_MARK
             self.told = near if self.told is None else self.told | near
+        self.light = LightThings(task.tone, task.width_pt, task.height_pt)
+        black = self._black()
+        hatching.draw_first(self.sheet, black)
+        self.small = Strokes.joined([self.small, black]) if len(black) else self.small
+
+    def _black(self) -> Strokes:
+        """Solid black: everywhere under layers that reach it, else around small light things."""
+        task, layers = self.task, self.task.texture.layers
+        dark = layers[-1] if layers and task.texture.engraving is None and layers[-1].spacing_pt == 0 else None
+        black = solids.BLACK if dark is not None and dark.high >= 1.0 else solids.DARKEST
+        return solids.solids(
+            task.tone, task.width_pt, task.height_pt, task.pen_pt, MEAN * task.gain, self.sheet.ink, black, self.light,
+            dark is not None and dark.high >= ALMOST,
+        )  # fmt: skip
 
     def field(self) -> tuple[Cells, Cells] | None:
         """Cosine and sine of twice the angle of the task's field in each cell, (rows, columns); None without one."""
@@ -92,5 +109,6 @@ class Begun:
         return whole * np.float32(c), whole * np.float32(s)
 
     def with_small(self, strokes: Strokes) -> Strokes:
-        """The strokes, on those of small dark things."""
+        """The strokes, on those of small dark things and solid black, and out of small light ones."""
+        strokes = self.light.kept_out(strokes, MEAN * self.task.gain)
         return Strokes.joined([self.small, strokes]) if len(self.small) else strokes

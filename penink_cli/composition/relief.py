@@ -13,17 +13,17 @@ from penink_cli.composition.filters import Picture, blurred, enlarged, looked_up
 _RADIUS_PT = 4.0  # of the Gaussian that the guided filter gathers with
 _FLAT = 0.045  # a local standard deviation of grey that is detail; what is well above is an edge
 _GRID_PT = 0.75  # of the base
-# Relief: structure between these Gaussians' σ that is everywhere around, and not on one edge, as coins, fur, leaves are.
-# Where it has LEAST of contrast and more, only greater steps belong to the base, up to a deviation of EDGES from FULL on.
+# Relief: structure between these Gaussians' σ that is all around and not on one edge, as on coins, in fur, in leaves.
+# Where it has LEAST contrast and more, only greater steps belong to the base, up to a deviation of EDGES from FULL on.
 _STRUCTURE_PT, _AROUND_PT, _MOST, _LEAST, _FULL, _EDGES = (1.0, 3.0), 8.0, 0.06, 0.010, 0.024, 0.10
 _FINE_PT, _FINE_SHARE = 0.5, 0.4  # what is finer a pen cannot show, and so much of it is kept
 _LIMIT = 0.4  # detail is not raised beyond that
 _USUAL, _OFFSET, _POWER, _LESS, _MORE = 0.055, 0.012, 0.4, 0.7, 1.5  # faint detail is raised more than strong
 _GAIN = np.array([round(((_USUAL) / (k / 512 + _OFFSET)) ** _POWER, 9) for k in range(257)]).clip(_LESS, _MORE)
-# What the exposure has lifted there beyond so much is taken back by so much: relief in light tones is lost on the pen; and
-# detail is raised by so much more where so much was lifted.
+# What the exposure has lifted there beyond so much is taken back by so much, for relief in light tones is lost on the
+# pen, and detail is raised by so much more where so much was lifted.
 _LIFT, _TAKEN_BACK, _CARVED, _LIFTED = 0.08, 0.7, 0.5, 0.25
-# What of the detail lies below BROAD, in parts of what lies above it, where it is grain (grass, gravel), and is raised less.
+# Where so much of the detail is finer than BROAD, in parts of what is not, it is grain, as grass is, and raised less.
 _BROAD_PT, _GRAIN, _ALL_GRAIN, _GRAIN_LEFT = 1.2, 0.6, 0.95, 0.4
 _RELIEF, _RELIEF_RANGE, _RELIEF_INK, _LIGHT = 0.045, 0.05, 0.6, 0.60  # where detail is that strong, lights come down
 
@@ -65,7 +65,8 @@ def raised(
 ) -> Picture:  # fmt: skip
     """The base `lights` (h, w) with the detail upon it.
 
-    slope: that of the exposure's curve at each pixel, which has raised or flattened the base. lifted: by how much relief is lighter for it.
+    slope: that of the exposure's curve at each pixel, which has raised or flattened the base.
+    lifted: by how much relief is lighter for it, 0 elsewhere.
     gain: of detail of usual strength. noise: its standard deviation, grey.
     """
     pt = pixels_per_pt
@@ -83,11 +84,13 @@ def raised(
 
     strong = spread(middle, 6.0)
     each = looked_up(strong, _GAIN, 0.0, 0.5)
-    each *= np.float32(gain) * np.clip(slope, 0.8, 1.4) * (1 + np.float32(_CARVED) * np.clip(lifted * np.float32(1 / _LIFTED), 0, 1))
+    each *= np.float32(gain) * np.clip(slope, 0.8, 1.4)
+    each *= 1 + np.float32(_CARVED / _LIFTED) * np.clip(lifted, 0, _LIFTED)
     lights = lights - np.float32(_TAKEN_BACK) * np.maximum(0, lifted - np.float32(_LIFT))
     broad = blurred(middle, _BROAD_PT * pt, threads)
     grain = spread(middle - broad, 6.0) / (spread(broad, 6.0) + np.float32(0.004))
-    each *= 1 - np.float32(1 - _GRAIN_LEFT) * np.clip((grain - np.float32(_GRAIN)) / np.float32(_ALL_GRAIN - _GRAIN), 0, 1)
+    share = np.clip((grain - np.float32(_GRAIN)) * np.float32(1 / (_ALL_GRAIN - _GRAIN)), 0, 1)
+    each *= 1 - np.float32(1 - _GRAIN_LEFT) * share
     drawn = _limited(each * guard(middle, 0.5 * noise)) + np.float32(_FINE_SHARE) * each * guard(fine, noise)
     return _with_room(lights, drawn, pt, threads)
 

@@ -1,13 +1,16 @@
-"""Small dark things on bare paper are drawn as themselves, and nothing sticks out of them."""
+"""Small dark things on bare paper are drawn as themselves, nothing sticks out of them, and light ones alike."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
+from PIL import Image, ImageDraw, ImageFont
 
 from penink_cli.blasting.blast import blast
+from penink_cli.blasting.light import LightThings
 from penink_cli.blasting.marks import marks
 from penink_cli.blasting.sheet import coverage
+from penink_cli.ground.masks import distance
 from penink_cli.ground.model import Floats, Strokes
 from penink_cli.options.textures import find_texture
 
@@ -37,6 +40,70 @@ def test_a_black_disc_is_black_and_throws_nothing_out(texture, diameter):
     drawn = blast(disc(diameter), SIDE, SIDE, None, find_texture(texture), device_dpi=None)
     inside, stray = inside_and_stray(drawn, diameter)
     assert inside >= (0.75 if diameter > 2 else 0.6) and stray <= 0.1
+
+
+def light_and_around(drawn: Strokes, diameter: float) -> tuple[float, float]:
+    """How light a white disc in the middle is, and the ink from one to four points beside it."""
+    ink = coverage(drawn, SIDE * FINE, SIDE * FINE)
+    y, x = np.mgrid[: SIDE * FINE, : SIDE * FINE] + 0.5
+    r = np.hypot(x - SIDE * FINE / 2, y - SIDE * FINE / 2) / FINE
+    around = (r > diameter / 2 + 1) & (r < diameter / 2 + 4)
+    return 1 - float(ink[r < diameter / 2].mean()), float(ink[around].mean())
+
+
+@pytest.mark.parametrize(
+    "texture", ["crosshatch", "parallel", "form", "engraving", "stipple", "fur", "scribble", "brick"]
+)
+@pytest.mark.parametrize("diameter", [2, 3, 4, 6, 8, 12])
+def test_a_white_disc_in_black_is_white_and_the_black_beside_it_black(texture, diameter):
+    drawn = blast(1 - disc(diameter), SIDE, SIDE, None, find_texture(texture), device_dpi=None)
+    light, around = light_and_around(drawn, diameter)
+    assert light >= (0.75 if diameter > 2 else 0.6) and around >= 0.97
+
+
+@pytest.mark.parametrize("rule", ["strict", "engrave"])
+@pytest.mark.parametrize("diameter", [2, 3, 6])
+def test_a_white_disc_by_other_rules(rule, diameter):
+    drawn = blast(1 - disc(diameter), SIDE, SIDE, None, find_texture("stipple"), device_dpi=None, rule=rule)
+    light, around = light_and_around(drawn, diameter)
+    assert light >= (0.75 if diameter > 2 else 0.6) and around >= 0.97
+
+
+@pytest.mark.parametrize("options", [{"swell": 1.0}, {"device_dpi": 600.0}, {"pen_pt": 0.5}])
+def test_a_white_disc_among_swelling_strokes_for_a_printer_and_with_one_pen(options):
+    drawn = blast(1 - disc(3), SIDE, SIDE, None, find_texture("form"), **{"device_dpi": None, **options})
+    light, around = light_and_around(drawn, 3)
+    assert light >= 0.75 and around >= 0.85  # drawn without the printer's gain, which closes it
+
+
+def test_white_lettering_is_left_out_of_the_black():
+    image = Image.new("L", (8 * SIDE, 8 * SIDE), 255)
+    ImageDraw.Draw(image).text((60, 230), "Hamburg", 0, ImageFont.load_default(9 * 8 * 1.3))
+    letters = np.asarray(image) < 128
+    tone = np.where(letters, 0.0, 1.0).reshape(2 * SIDE, 4, 2 * SIDE, 4).mean(axis=(1, 3))
+    for texture in ("crosshatch", "engraving"):
+        ink = coverage(blast(tone, SIDE, SIDE, None, find_texture(texture), device_dpi=None), 8 * SIDE, 8 * SIDE)
+        assert 1 - ink[letters].mean() >= 0.75
+        beside = (distance(~letters) > 8) & (distance(~letters) < 24)
+        assert ink[beside].mean() >= 0.97
+
+
+def test_strokes_are_cut_at_light_things_and_nowhere_else():
+    light = LightThings(1 - disc(6), SIDE, SIDE)
+    across = [[x, SIDE / 2] for x in (10.0, 25.0, 45.0, 62.0)]
+    beside = [[x, SIDE / 2 + 8] for x in (10.0, 25.0, 45.0, 62.0)]
+    given = Strokes.of(SIDE, SIDE, [across, beside], [[0.5, 1.0], [0.5, 0.5]])
+    kept = light.kept_out(given, 0.0)
+    assert [len(kept[i]) for i in range(len(kept))] == [4, 4, 4]
+    np.testing.assert_array_equal(kept[0], beside)
+    left, right = kept[1], kept[2]
+    half = 0.75 / 2  # the stroke is so wide half way along
+    assert left[0].tolist() == across[0] and abs(left[3, 0] - (SIDE / 2 - 3 - half)) < 0.3
+    assert right[3].tolist() == across[3] and abs(right[0, 0] - (SIDE / 2 + 3 + half)) < 0.3
+    assert kept.knot_widths is not None
+    np.testing.assert_allclose(kept.knot_widths[[2, 5]], [0.5, 1.0])
+    assert 0.7 < kept.knot_widths[3] < kept.knot_widths[4] < 0.8
+    assert LightThings(np.zeros((9, 9)), SIDE, SIDE).kept_out(given, 0.0) is given
 
 
 def test_one_pen_fills_as_well():

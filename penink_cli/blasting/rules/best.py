@@ -6,11 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from penink_cli.blasting import hatching, pressure, scaling, solids, stroke_set, tile
+from penink_cli.blasting import hatching, pressure, scaling, stroke_set, tile
 from penink_cli.blasting.rules import engrave
 from penink_cli.blasting.sheet import Sheet
 from penink_cli.blasting.task import Begun, Task
-from penink_cli.ground.device import MEAN
 from penink_cli.ground.median import median
 from penink_cli.ground.model import Strokes, Texture
 
@@ -43,15 +42,10 @@ def draw(task: Task) -> Strokes:
 
 def _layers(task: Task, begun: Begun) -> Strokes:
     layers, sheet = task.texture.layers, begun.sheet
-    black = Strokes(task.width_pt, task.height_pt)
-    if layers[-1].high >= 1.0:
-        gain = MEAN * task.gain
-        black = solids.solids(task.tone, task.width_pt, task.height_pt, task.pen_pt, gain, sheet.ink)
-        hatching.draw_first(sheet, black)
     strokes = hatching.hatch_sheet(
         sheet, layers, task.edges, task.gain, task.seed, task.pen_pt, task.tick, begun.field(), begun.told
     )
-    return Strokes.joined([black, _pressed(task, begun, strokes)])
+    return _pressed(task, begun, strokes)
 
 
 def _grown(task: Task, begun: Begun) -> Strokes:
