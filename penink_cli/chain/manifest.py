@@ -29,7 +29,7 @@ def illustrate(
         layers[-1]["lines"] = lines
         layers[-1]["line"] = {
             name.replace("-", "_"): _number(name, told[name])
-            for name in ("pen", "even", "density", "per-inch2", "min-rank")
+            for name in ("pen", "even", "density", "per-inch2", "min-rank", "ruled", "loose")
             if name in told
         }
     if "outline" in job.stages:

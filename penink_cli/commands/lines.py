@@ -33,6 +33,15 @@ from penink_cli.options.inputs import read_lines
     help="Inches of line that a square inch has room for, on the mean of the picture.",
 )
 @click.option("--min-rank", type=Finite(least=0), metavar="R", help="Least rank of a line.  [default: by the size]")
+@click.option(
+    "--ruled",
+    type=LENGTH,
+    metavar="LENGTH",
+    help="Straight from corner to corner, as along a ruler, and this far beyond: 4pt.",
+)
+@click.option(
+    "--loose", type=LENGTH, metavar="LENGTH", help="Each line twice, straying by this, as in a sketch: 0.8pt."
+)
 @verbose_option
 def lines(
     file: str | None,
@@ -43,13 +52,15 @@ def lines(
     density: float,
     per_inch2: float,
     min_rank: float | None,
+    ruled: float | None,
+    loose: float | None,
     verbose: bool,
     **_: Any,
 ) -> None:
     """Turn telling lines into pen strokes for one size on paper.
 
     The most telling first, as long as there is room around each: a stamp gets few, a poster many. Strokes swell
-    with the line and taper. Light lines are not drawn: `blast --lines`
+    with the line and taper; --ruled and --loose draw them as an architect does, and as in a sketch. Light lines are not drawn: `blast --lines`
     leaves them out of the hatching.
 
     \b
@@ -67,7 +78,7 @@ def lines(
     assert found is not None  # which it is only where no file is named
     height = width * found.height / found.width
     check_sheet(width, height)
-    choice = LineChoice(pen, even, density, per_inch2, min_rank)
+    choice = LineChoice(pen, even, density, per_inch2, min_rank, ruled or 0.0, loose or 0.0)
     drawn = line_strokes(found, width, height, choice)
     least = least_rank(width, height) if min_rank is None else min_rank
     reporter(verbose)(f"{len(drawn)} of {len(found)} lines; --min-rank {least:.2f}")

@@ -29,6 +29,7 @@ _EYE_PT, _BROAD_PT, _AROUND_PT = 0.7, 4.0, 9.0  # activity: what lies between th
 _BACKGROUND, _BUSY, _MOST_BUSY = 0.25, 0.8, 1.5  # the weight of places without activity; its quantile that counts 1
 _PAGE, _PAGE_PAPER = 0.5, 0.985  # a picture more than half of which is so light is a page: its paper stays
 _INK, _PAPER = 0.05, 0.95  # what is darker is solid, what is lighter is bare
+_LIGHTS, _MIDDLE = 0.75, 0.2  # what was so light is not lifted relief, what was darker by the second is in full
 _TELLING = 1_500_000  # values, more or less, that tell the range of a photo
 _NARROW = 0.35  # of the range of grey: a photograph that uses no more is told of
 
@@ -126,7 +127,10 @@ def _composed(
     exposed = looked_up(broad, table)
     # slopes belong to the middle of their steps
     slopes = looked_up(broad, slope, 0.5 / exposure.STEPS, 1 - 0.5 / exposure.STEPS)
-    result = relief.raised(detail, exposed, slopes, carved * (exposed - broad), choice.detail, noise, pt, threads)
+    key = exposure.inks(choice.target)
+    lifted = np.float32(key * key) * carved * (exposed - broad)
+    lifted *= np.clip((np.float32(_LIGHTS) - broad) * np.float32(1 / _MIDDLE), 0, 1)
+    result = relief.raised(detail, exposed, slopes, lifted, choice.detail, noise, pt, threads)
     result = np.clip((result - np.float32(_INK)) * np.float32(1 / (_PAPER - _INK)), 0, 1)
     paper = int((grey > _PAGE_PAPER).sum()) / grey.size
     if paper > _PAGE:

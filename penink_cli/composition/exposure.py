@@ -6,6 +6,7 @@ much of the picture is to be how light: quantiles of grey, 0 ink and 1 paper.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from itertools import pairwise
 
@@ -38,6 +39,15 @@ def check_quantiles(quantiles: Sequence[tuple[float, float]]) -> None:
         raise ParameterError("a target begins at 0:0 and ends at 1:1")
     if any(a >= b for a, b in pairwise(shares)) or any(a > b for a, b in pairwise(greys)):
         raise ParameterError("a target's shares must rise, and its greys must not fall")
+
+
+def inks(target: Quantiles) -> float:
+    """How much ink a target has the picture take, in parts of what the house's has."""
+
+    def ink(quantiles: Quantiles) -> float:
+        return 1 - math.fsum((b - a) * (c + d) / 2 for (a, c), (b, d) in pairwise(quantiles))
+
+    return ink(target) / ink(TARGETS["house"])
 
 
 def histogram(grey: Picture, weight: Picture | None, steps: int = STEPS) -> Floats:

@@ -22,7 +22,7 @@ _USUAL, _OFFSET, _POWER, _LESS, _MORE = 0.055, 0.012, 0.4, 0.7, 1.5  # faint det
 _GAIN = np.array([round(((_USUAL) / (k / 512 + _OFFSET)) ** _POWER, 9) for k in range(257)]).clip(_LESS, _MORE)
 # What the exposure has lifted there beyond so much is taken back by so much, for relief in light tones is lost on the
 # pen, and detail is raised by so much more where so much was lifted.
-_LIFT, _TAKEN_BACK, _CARVED, _LIFTED = 0.08, 0.7, 0.5, 0.25
+_LIFT, _TAKEN_BACK, _CARVED, _LIFTED = 0.1, 0.6, 0.35, 0.25
 # Where so much of the detail is finer than BROAD, in parts of what is not, it is grain, as grass is, and raised less.
 _BROAD_PT, _GRAIN, _ALL_GRAIN, _GRAIN_LEFT = 1.2, 0.6, 0.95, 0.4
 _RELIEF, _RELIEF_RANGE, _RELIEF_INK, _LIGHT = 0.045, 0.05, 0.6, 0.60  # where detail is that strong, lights come down

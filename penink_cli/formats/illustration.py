@@ -42,6 +42,7 @@ MAX_BYTES = 1 << 20  # of the manifest
 MAX_LAYERS = 64
 MAX_SIZE = 144_000.0  # points
 MAX_PEN = 72.0
+MAX_STRAY = 144.0  # of lines, points
 COMPACT = b"PI"  # how all compact members begin
 LEVELS = 24  # of grey, unless a layer says another number: what ink shows of more is nothing
 
@@ -151,6 +152,8 @@ def _line(item: Any, place: str) -> LineChoice:
         density=number("density", default.density, 0.0001, 1e4),
         per_inch2=number("per_inch2", default.per_inch2, 0.0001, 1e4),
         min_rank=number("min_rank", default.min_rank, 0, lines_format.MAX_RANK),
+        ruled_pt=number("ruled", default.ruled_pt, 0, MAX_STRAY),
+        loose_pt=number("loose", default.loose_pt, 0, MAX_STRAY),
     )
 
 
@@ -275,6 +278,8 @@ def _line_item(line: LineChoice) -> dict[str, Any]:
         ("density", line.density, default.density),
         ("per_inch2", line.per_inch2, default.per_inch2),
         ("min_rank", line.min_rank, default.min_rank),
+        ("ruled", line.ruled_pt, default.ruled_pt),
+        ("loose", line.loose_pt, default.loose_pt),
     ):
         if value != usual:
             item[name] = _plain(value)

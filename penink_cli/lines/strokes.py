@@ -15,6 +15,11 @@ KNOT_PT, SMOOTH_PT = 3.0, 0.6
 #: The finest line that a pen draws, in parts of its broadest; the length of a tip, points; its width at the end, in
 #: parts of the line's.
 FINEST, TIP_PT, TIP = 0.25, 12.0, 0.45
+#: Ruled lines stray from what they follow by so much at the most; what has no straight piece so long is drawn by hand,
+#: and none goes beyond its corner by more than that part of itself.
+RULED_PT, STRAIGHT_PT, BEYOND = 1.2, 9.0, 0.25
+#: Loose lines stray anew every so many points; the second one is so much finer, and they begin and end so far apart.
+STRAYS_PT, SECOND, APART = 16.0, 0.7, 4.0
 
 
 def line_strokes(
@@ -36,9 +41,67 @@ def line_strokes(
             widths.append(choice.pen_pt if choice.even else max(breadth, FINEST * choice.pen_pt))
             continue
         knots, pressed, ring = _knots(points, weight)
-        chains.append(_curve(knots, ring))
-        widths.append(choice.pen_pt if choice.even else _widths(knots, pressed, ring, choice.pen_pt))
+        ruled = _ruled(knots, choice.ruled_pt * by) if choice.ruled_pt and not ring else []
+        if ruled:
+            width = choice.pen_pt * (1.0 if choice.even else FINEST + (1 - FINEST) * float(np.median(pressed)))
+            chains += ruled
+            widths += [width] * len(ruled)
+            continue
+        strays = [knots] if not choice.loose_pt else _strays(knots, choice.loose_pt * by, i)
+        for k, line in enumerate(strays):
+            pen = choice.pen_pt if not k else SECOND * choice.pen_pt
+            closed = ring and len(strays) == 1
+            chains.append(_curve(line, closed))
+            widths.append(pen if choice.even else _widths(line, pressed, closed, pen))
     return Strokes.of(width_pt, height_pt, chains, widths)
+
+
+def _ruled(knots: Floats, beyond: float) -> list[Floats]:
+    """Straight cubics from corner to corner of the line through knots (k, 2), and beyond; none if it has no corners."""
+    corners = [0, len(knots) - 1]
+    left = [(0, len(knots) - 1)]
+    while left:
+        a, b = left.pop()
+        chord = knots[b] - knots[a]
+        inner = knots[a + 1 : b] - knots[a]
+        if not len(inner):
+            continue
+        length = math.sqrt(float(chord[0] * chord[0] + chord[1] * chord[1]))
+        off = np.abs(inner[:, 0] * chord[1] - inner[:, 1] * chord[0]) / max(length, 1e-9)
+        k = int(np.argmax(off))
+        if off[k] > RULED_PT:
+            corners.append(a + 1 + k)
+            left += [(a, a + 1 + k), (a + 1 + k, b)]
+    ends = knots[sorted(corners)]
+    long = lengths(ends)
+    if float(long.max()) < STRAIGHT_PT or float(long.max()) < 0.4 * math.fsum(long.tolist()):
+        return []
+    more = np.minimum(beyond, BEYOND * long)[:, None] * (ends[1:] - ends[:-1]) / np.maximum(long, 1e-9)[:, None]
+    begin, end = ends[:-1] - more, ends[1:] + more
+    return [a + (b - a) * (np.arange(4) / 3)[:, None] for a, b in zip(begin, end)]
+
+
+def _strays(knots: Floats, by: float, seed: int) -> list[Floats]:
+    """The line through knots (k, 2) as a hand draws it twice, loosely: each time it strays otherwise."""
+    rng = np.random.default_rng([seed, 17])
+    run = np.concatenate([[0.0], np.cumsum(lengths(knots))])
+    along = np.gradient(knots, axis=0)
+    size = np.maximum(np.sqrt(along[:, 0] * along[:, 0] + along[:, 1] * along[:, 1]), 1e-9)[:, None]
+    along = along / size
+    across = np.column_stack([-along[:, 1], along[:, 0]])
+    length = float(run[-1])
+    at = np.arange(0.0, length + STRAYS_PT, STRAYS_PT)
+    out = []
+    for side in (-1.0, 1.0):
+        aside = by * (rng.uniform(-0.7, 0.7, len(at)) + 0.5 * side)
+        ends = rng.uniform(-0.5, 1.0, 2) * np.minimum(APART * by, length / 6)
+        smooth = np.interp(run, at, aside)
+        # a stroke that goes on a little, or stops short
+        moved = knots + across * smooth[:, None]
+        share = np.clip(1 - np.minimum(run, length - run) / max(length / 3, 1e-9), 0, 1)[:, None]
+        first = (run < length / 2)[:, None]
+        out.append(moved + along * np.where(first, -ends[0], ends[1]) * share)
+    return out
 
 
 def _knots(points: Floats, weight: Floats) -> tuple[Floats, Floats, bool]:

@@ -58,6 +58,8 @@ class LineChoice:
     pen_pt: width of the broadest strokes. even: one width from end to end, as a technical pen draws.
     density: points of line in a square point that there is room for. per_inch2: inches of line in a square inch
     that all lines may come to. min_rank: the least rank, None for one that suits the size.
+    ruled_pt: how far lines go beyond their corners, straight in between as along a ruler; 0 for a free hand.
+    loose_pt: how far each line and a second one beside it stray from it, as in a sketch; 0 for one line that does not.
     """
 
     pen_pt: float = 1.3
@@ -65,3 +67,5 @@ class LineChoice:
     density: float = 0.13
     per_inch2: float = 6.0
     min_rank: float | None = None
+    ruled_pt: float = 0.0
+    loose_pt: float = 0.0
