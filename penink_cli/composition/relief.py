@@ -15,14 +15,14 @@ _FLAT = 0.045  # a local standard deviation of grey that is detail; what is well
 _GRID_PT = 0.75  # of the base
 # Relief: structure between these Gaussians' σ that is all around and not on one edge, as on coins, in fur, in leaves.
 # Where it has LEAST contrast and more, only greater steps belong to the base, up to a deviation of EDGES from FULL on.
-_STRUCTURE_PT, _AROUND_PT, _MOST, _LEAST, _FULL, _EDGES = (1.0, 3.0), 8.0, 0.06, 0.010, 0.024, 0.10
+_STRUCTURE_PT, _AROUND_PT, _MOST, _LEAST, _FULL, _EDGES = (1.0, 3.0), 8.0, 0.06, 0.010, 0.024, 0.08
 _FINE_PT, _FINE_SHARE = 0.5, 0.4  # what is finer a pen cannot show, and so much of it is kept
 _LIMIT = 0.4  # detail is not raised beyond that
 _USUAL, _OFFSET, _POWER, _LESS, _MORE = 0.055, 0.012, 0.4, 0.7, 1.5  # faint detail is raised more than strong
 _GAIN = np.array([round(((_USUAL) / (k / 512 + _OFFSET)) ** _POWER, 9) for k in range(257)]).clip(_LESS, _MORE)
 # What the exposure has lifted there beyond so much is taken back by so much, for relief in light tones is lost on the
 # pen, and detail is raised by so much more where so much was lifted.
-_LIFT, _TAKEN_BACK, _CARVED, _LIFTED = 0.1, 0.6, 0.35, 0.25
+_LIFT, _TAKEN_BACK, _CARVED, _LIFTED = 0.12, 0.6, 0.35, 0.25
 # Where so much of the detail is finer than BROAD, in parts of what is not, it is grain, as grass is, and raised less.
 _BROAD_PT, _GRAIN, _ALL_GRAIN, _GRAIN_LEFT = 1.2, 0.6, 0.95, 0.4
 _RELIEF, _RELIEF_RANGE, _RELIEF_INK, _LIGHT = 0.045, 0.05, 0.6, 0.60  # where detail is that strong, lights come down
