@@ -74,8 +74,7 @@ def marks(
 
 
 def things(tone: Floats, px: float) -> Iterator[tuple[int, int, Mask, Floats]]:
-    """Small dark things on bare paper: row and column of a window's corner, what is the thing in it, and how far from it
-    each place of the window lies (points).
+    """Small dark things on bare paper: row and column of a window, what is the thing in it, how far all is off.
 
     tone: (h, w), px pixels a point.
     """

@@ -60,8 +60,8 @@ def lines(
     """Turn telling lines into pen strokes for one size on paper.
 
     The most telling first, as long as there is room around each: a stamp gets few, a poster many. Strokes swell
-    with the line and taper; --ruled and --loose draw them as an architect does, and as in a sketch. Light lines are not drawn: `blast --lines`
-    leaves them out of the hatching.
+    with the line and taper; --ruled and --loose draw them as an architect does, and as in a sketch.
+    Light lines are not drawn: `blast --lines` leaves them out of the hatching.
 
     \b
     penink lines --width 6in photo.lines.json -o lines.strokes.jsonl

@@ -119,7 +119,9 @@ def _composed(
     report(f"black point {black:.3f}, white point {white:.3f}")
     grey = np.clip((grey - np.float32(black)) * np.float32(1 / (white - black)), 0, 1)
     noise = noise_level(grey)
-    broad, carved = relief.base(grey, pt, threads)
+    key = exposure.inks(choice.target)
+    key *= key
+    broad, carved = relief.base(grey, key, pt, threads)
     detail = grey - broad
     weight = _weight(grey, noise, pt, threads)
     upto = exposure.histogram(broad, weight if fade is None else weight * fade)
@@ -127,8 +129,7 @@ def _composed(
     exposed = looked_up(broad, table)
     # slopes belong to the middle of their steps
     slopes = looked_up(broad, slope, 0.5 / exposure.STEPS, 1 - 0.5 / exposure.STEPS)
-    key = exposure.inks(choice.target)
-    lifted = np.float32(key * key) * carved * (exposed - broad)
+    lifted = np.float32(key) * carved * (exposed - broad)
     lifted *= np.clip((np.float32(_LIGHTS) - broad) * np.float32(1 / _MIDDLE), 0, 1)
     result = relief.raised(detail, exposed, slopes, lifted, choice.detail, noise, pt, threads)
     result = np.clip((result - np.float32(_INK)) * np.float32(1 / (_PAPER - _INK)), 0, 1)

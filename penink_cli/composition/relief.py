@@ -15,7 +15,7 @@ _FLAT = 0.045  # a local standard deviation of grey that is detail; what is well
 _GRID_PT = 0.75  # of the base
 # Relief: structure between these Gaussians' σ that is all around and not on one edge, as on coins, in fur, in leaves.
 # Where it has LEAST contrast and more, only greater steps belong to the base, up to a deviation of EDGES from FULL on.
-_STRUCTURE_PT, _AROUND_PT, _MOST, _LEAST, _FULL, _EDGES = (1.0, 3.0), 8.0, 0.06, 0.010, 0.024, 0.08
+_STRUCTURE_PT, _AROUND_PT, _MOST, _LEAST, _FULL, _EDGES = (1.0, 3.0), 8.0, 0.06, 0.010, 0.024, 0.085
 _FINE_PT, _FINE_SHARE = 0.5, 0.4  # what is finer a pen cannot show, and so much of it is kept
 _LIMIT = 0.4  # detail is not raised beyond that
 _USUAL, _OFFSET, _POWER, _LESS, _MORE = 0.055, 0.012, 0.4, 0.7, 1.5  # faint detail is raised more than strong
@@ -28,8 +28,11 @@ _BROAD_PT, _GRAIN, _ALL_GRAIN, _GRAIN_LEFT = 1.2, 0.6, 0.95, 0.4
 _RELIEF, _RELIEF_RANGE, _RELIEF_INK, _LIGHT = 0.045, 0.05, 0.6, 0.60  # where detail is that strong, lights come down
 
 
-def base(grey: Picture, pixels_per_pt: float, threads: int) -> tuple[Picture, Picture]:
-    """Broad tones (h, w) of grey (h, w), sharp at strong edges, and how much each place is in relief, 0 … 1."""
+def base(grey: Picture, ink: float, pixels_per_pt: float, threads: int) -> tuple[Picture, Picture]:
+    """Broad tones (h, w) of grey (h, w), sharp at strong edges, and how much each place is in relief, 0 … 1.
+
+    ink: how much the picture is to take, in parts of the usual; with less of it there is less for relief.
+    """
     height, width = grey.shape
     cell = max(1.0, _GRID_PT * pixels_per_pt)
     w, h = max(1, round(width / cell)), max(1, round(height / cell))
@@ -38,7 +41,7 @@ def base(grey: Picture, pixels_per_pt: float, threads: int) -> tuple[Picture, Pi
     mean = blurred(small, sigma, threads)
     variance: Picture = np.maximum(blurred(small * small, sigma, threads) - mean * mean, 0)
     relief = _in_relief(small, pixels_per_pt * w / width, threads)
-    flat = np.float32(_FLAT) + np.float32(_EDGES - _FLAT) * relief
+    flat = np.float32(_FLAT) + np.float32((_EDGES - _FLAT) * min(ink, 1.0)) * relief
     kept: Picture = variance / (variance + flat * flat)
     rest = mean - kept * mean
     slope, offset = (enlarged(blurred(v, sigma, threads), width, height, threads) for v in (kept, rest))

@@ -41,7 +41,7 @@ def line_strokes(
             widths.append(choice.pen_pt if choice.even else max(breadth, FINEST * choice.pen_pt))
             continue
         knots, pressed, ring = _knots(points, weight)
-        ruled = _ruled(knots, choice.ruled_pt * by) if choice.ruled_pt and not ring else []
+        ruled = _ruled(points, choice.ruled_pt * by) if choice.ruled_pt and not ring else []
         if ruled:
             width = choice.pen_pt * (1.0 if choice.even else FINEST + (1 - FINEST) * float(np.median(pressed)))
             chains += ruled
@@ -56,14 +56,14 @@ def line_strokes(
     return Strokes.of(width_pt, height_pt, chains, widths)
 
 
-def _ruled(knots: Floats, beyond: float) -> list[Floats]:
-    """Straight cubics from corner to corner of the line through knots (k, 2), and beyond; none if it has no corners."""
-    corners = [0, len(knots) - 1]
-    left = [(0, len(knots) - 1)]
+def _ruled(points: Floats, beyond: float) -> list[Floats]:
+    """Straight cubics from corner to corner of a line (k, 2), and beyond; none if it has no straight piece."""
+    corners = [0, len(points) - 1]
+    left = [(0, len(points) - 1)]
     while left:
         a, b = left.pop()
-        chord = knots[b] - knots[a]
-        inner = knots[a + 1 : b] - knots[a]
+        chord = points[b] - points[a]
+        inner = points[a + 1 : b] - points[a]
         if not len(inner):
             continue
         length = math.sqrt(float(chord[0] * chord[0] + chord[1] * chord[1]))
@@ -72,7 +72,7 @@ def _ruled(knots: Floats, beyond: float) -> list[Floats]:
         if off[k] > RULED_PT:
             corners.append(a + 1 + k)
             left += [(a, a + 1 + k), (a + 1 + k, b)]
-    ends = knots[sorted(corners)]
+    ends = points[sorted(corners)]
     long = lengths(ends)
     if float(long.max()) < STRAIGHT_PT or float(long.max()) < 0.4 * math.fsum(long.tolist()):
         return []

@@ -101,7 +101,10 @@ def test_loose_and_packed_draw_the_same_lines(penink, tmp_path):
 
 def test_another_choice_is_another_drawing(penink, tmp_path):
     manifest(tmp_path, line={"even": True, "pen": 0.5})
-    assert not drawn(penink, tmp_path, tmp_path / "i.illustration.json").swells.any()
+    plain = drawn(penink, tmp_path, tmp_path / "i.illustration.json")
+    assert not plain.swells.any()
+    manifest(tmp_path, line={"even": True, "pen": 0.5, "loose": 1.0})
+    assert len(drawn(penink, tmp_path, tmp_path / "i.illustration.json")) > len(plain)
 
 
 @pytest.mark.parametrize(
@@ -113,6 +116,8 @@ def test_another_choice_is_another_drawing(penink, tmp_path):
         ({"density": -1}, "line: density is -1"),
         ({"per_inch2": True}, "line: per_inch2 is true"),
         ({"min_rank": None}, "line: min_rank is null"),
+        ({"ruled": -1}, "line: ruled is -1"),
+        ({"loose": "2pt"}, 'line: loose is "2pt"'),
     ],
 )
 def test_a_wrong_choice_is_named(penink, tmp_path, line, complaint):

@@ -104,3 +104,36 @@ def test_spots_are_as_broad_as_they_are():
     assert [len(strokes[i]) for i in range(len(strokes))] == [1, 4, 1]
     assert strokes.widths.tolist() == pytest.approx([16, 10, 0.6])
     assert len(line_strokes(lines, 320, 240, LineChoice())) == 2  # the third is too fine by then
+
+
+def test_ruled_lines_are_straight_and_go_beyond_their_corners():
+    corner = np.concatenate([straight(200, 60, 300)[::6], [[300, y] for y in range(190, 40, -10)]])
+    free = line_strokes(listed((corner, 9)), 400, 300, LineChoice())
+    ruled = line_strokes(listed((corner, 9)), 400, 300, LineChoice(ruled_pt=5))
+    assert len(free) == 1 and len(ruled) == 2
+    across, up = ruled[0], ruled[1]
+    for a, b in ((across, [[55, 200], [305, 200]]), (up, [[300, 205], [300, 45]])):
+        np.testing.assert_allclose(a[[0, -1]], b, atol=1.5)
+        chord = a[-1] - a[0]
+        off = (a - a[0])[:, 0] * chord[1] - (a - a[0])[:, 1] * chord[0]
+        assert np.abs(off).max() < 1e-9 * (chord @ chord)
+
+
+def test_what_a_ruler_cannot_follow_is_drawn_by_hand():
+    t = np.linspace(0.3, 2.8, 60)
+    arc = np.column_stack([200 + 30 * np.cos(t), 150 + 30 * np.sin(t)])
+    lines = listed((arc, 9))
+    free, ruled = (line_strokes(lines, 200, 150, LineChoice(ruled_pt=r)) for r in (0.0, 5.0))
+    np.testing.assert_array_equal(free.points, ruled.points)
+
+
+def test_loose_lines_are_drawn_twice_each_near_where_it_belongs():
+    lines = listed((straight(100), 9), (straight(220), 5))
+    drawn = line_strokes(lines, 400, 300, LineChoice(loose_pt=1.5))
+    again = line_strokes(lines, 400, 300, LineChoice(loose_pt=1.5))
+    np.testing.assert_array_equal(drawn.points, again.points)
+    assert len(drawn) == 4
+    for i, y in enumerate((100, 100, 220, 220)):
+        off = drawn[i][:, 1] - y
+        assert 0.2 < np.abs(off).max() < 1.25 * 1.5
+    assert drawn.widths[1] < 0.8 * drawn.widths[0]
