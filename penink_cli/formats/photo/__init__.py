@@ -8,7 +8,7 @@
                                │   decoded.seen
        profile ─► background ─► luma, or colours ─► orientation
 
-choices: how the user wants it read, and what becomes of what is wrong. powers: the same on every machine.
+choices: how the user wants it read, and what becomes of what is wrong.
 Pillow is given these formats and no other: left to itself it would start Ghostscript on an EPS.
 
 Grey is Rec. 601 luma of sRGB's values, in integers. What is stored in 16 bits stays in 16 bits (of TIFF: where it is

@@ -7,8 +7,8 @@ import struct
 import numpy as np
 
 from penink_cli.formats.photo.choices import Verdict
-from penink_cli.formats.photo.powers import power
 from penink_cli.formats.photo.profile import FROM_XYZ, Curve, Profile, product
+from penink_cli.ground.exact import power
 from penink_cli.ground.model import Floats
 
 MOST = 1 << 22  # bytes of a profile that are looked at

@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from penink_cli.formats._compiled import colours as _colours
-from penink_cli.formats.photo.powers import power
+from penink_cli.ground.exact import power
 from penink_cli.ground.model import Floats
 
 STEPS = 1 << 16  # of the table of sRGB's curve

@@ -9,11 +9,19 @@ from libc.math cimport floor, frexp, ldexp, sqrt
 
 
 cdef inline double sine_of(double x) noexcept nogil:
-    """sin x: x less the nearest multiple of π / 2, taken off in three parts, then the series of sine or cosine."""
+    return _wave(x, 0)
+
+
+cdef inline double cosine_of(double x) noexcept nogil:
+    return _wave(x, 1)
+
+
+cdef inline double _wave(double x, int ahead) noexcept nogil:
+    """sin(x + ahead · π / 2): x less the nearest multiple of π / 2, taken off in three parts, then a series."""
     cdef double n = floor(x * 0.63661977236758134308 + 0.5)
     cdef double r = ((x - n * 1.5707963267341256) - n * 6.077100506303966e-11) - n * 2.0222662487959506e-21
     cdef double z = r * r
-    cdef int quarter = <int>(n - 4.0 * floor(n * 0.25))
+    cdef int quarter = <int>(n - 4.0 * floor(n * 0.25)) + ahead
     cdef double value
     if quarter & 1:
         value = 1.0 - z * (0.5 - z * (1.0 / 24.0 - z * (1.0 / 720.0 - z * (1.0 / 40320.0 - z * (
@@ -56,17 +64,24 @@ cdef inline double logarithm(double x) noexcept nogil:
 cdef inline double angle_of(double x, double y) noexcept nogil:
     """The angle of the direction (x, y) from the x axis towards y, -π … π; 0 for none.
 
-    Three times halved, tan(θ / 2) = y / (x + r), so that a short series does; a left half plane is turned first.
+    The lesser over the greater is at most the tangent of an eighth of a turn; that halved three times, and the series.
     """
-    cdef double r = sqrt(x * x + y * y), t, z, angle
-    if r == 0.0:
+    cdef double wide = x if x >= 0.0 else -x
+    cdef double tall = y if y >= 0.0 else -y
+    cdef double t, s, total, angle
+    cdef int n, _
+    if wide == 0.0 and tall == 0.0:
         return 0.0
-    t = y / ((x if x >= 0.0 else -x) + r)
-    t = t / (1.0 + sqrt(1.0 + t * t))
-    t = t / (1.0 + sqrt(1.0 + t * t))
-    z = t * t
-    angle = 8.0 * t * (1.0 - z * (1.0 / 3.0 - z * (1.0 / 5.0 - z * (1.0 / 7.0 - z * (1.0 / 9.0 - z * (
-        1.0 / 11.0 - z * (1.0 / 13.0 - z * (1.0 / 15.0 - z * (1.0 / 17.0 - z * (1.0 / 19.0 - z / 21.0))))))))))
-    if x >= 0.0:
-        return angle
-    return (3.14159265358979323846 if y >= 0.0 else -3.14159265358979323846) - angle
+    t = tall / wide if tall <= wide else wide / tall
+    for _ in range(3):
+        t = t / (1.0 + sqrt(1.0 + t * t))
+    s = t * t
+    total = 0.0
+    for n in range(17, 0, -2):
+        total = (1.0 if n % 4 == 1 else -1.0) / n + total * s
+    angle = 8.0 * t * total
+    if tall > wide:
+        angle = 1.57079632679489661923 - angle
+    if x < 0.0:
+        angle = 3.14159265358979323846 - angle
+    return -angle if y < 0.0 else angle
