@@ -48,9 +48,10 @@ def responses(picture: Picture, across: float, along: float, threads: int) -> Ba
     tasks: list[Callable[[], object]] = []
     for k, (x, y) in enumerate(units(2 * DIRECTIONS)[:DIRECTIONS].tolist()):
         down, right, weight = _taps(across, along, r, x, y)
+        offset = (down * padded.shape[1] + right).astype(np.intp)
 
-        def work(top: int, bottom: int, k: int = k, down=down, right=right, weight=weight) -> None:  # type: ignore[no-untyped-def]
-            oriented.respond(padded, down, right, weight, out[k], top, bottom)
+        def work(top: int, bottom: int, k: int = k, offset=offset, weight=weight) -> None:  # type: ignore[no-untyped-def]
+            oriented.respond(padded, offset, weight, out[k], top, bottom)
 
         tasks += threading.ranges(work, h, 4 * _BAND)
     threading.share(tasks, threads)
@@ -61,7 +62,7 @@ def responses(picture: Picture, across: float, along: float, threads: int) -> Ba
 def _taps(
     across: float, along: float, r: int, x: float, y: float
 ) -> tuple[npt.NDArray[np.int32], npt.NDArray[np.int32], npt.NDArray[np.float32]]:
-    """Rows and columns from the window's corner, and weights, of a filter along (x, y): as many as a multiple of 4."""
+    """Rows and columns from the window's corner, and weights, of a filter along (x, y)."""
     i, j = np.divmod(np.arange((2 * r + 1) ** 2), 2 * r + 1)
     u, v = (j - r) * x + (i - r) * y, (i - r) * x - (j - r) * y
     low = exact.exp(-0.5 * _square(u / along))
@@ -71,9 +72,7 @@ def _taps(
     a, b = math.fsum(narrow), math.fsum(wide[seen])
     weights = [round(w / b - n / a, 9) for w, n in zip(wide[seen].tolist(), narrow.tolist())]
     weights[len(weights) // 2] -= math.fsum(weights)  # even ground answers with nothing
-    spare = -len(weights) % 4
-    rows, columns = (np.concatenate([k[seen], np.full(spare, r)]).astype(np.int32) for k in (i, j))
-    return rows, columns, np.array(weights + [0.0] * spare, np.float32)
+    return i[seen].astype(np.int32), j[seen].astype(np.int32), np.array(weights, np.float32)
 
 
 def _square(x: Floats) -> Floats:

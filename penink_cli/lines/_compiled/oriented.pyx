@@ -2,35 +2,24 @@
 """Compiled: a picture through a bank of oriented filters. See oriented.py."""
 
 
+cdef extern from "taps.h" nogil:
+    void penink_taps(
+        const float* values, const Py_ssize_t* offset, const float* weight, Py_ssize_t n, float* out, Py_ssize_t width
+    )
+
+
 def respond(
-    const float[:, ::1] padded, const int[::1] down, const int[::1] across, const float[::1] weight,
+    const float[:, ::1] padded, const Py_ssize_t[::1] offset, const float[::1] weight,
     float[:, ::1] out, Py_ssize_t top, Py_ssize_t bottom,
 ):
-    """Rows top … bottom of out (h, w): the weighted sum of padded at (row + down, column + across), taps in order.
+    """Rows top … bottom of out (h, w): the weighted sums of padded at as many offsets, in order.
 
-    The number of taps is a multiple of four.
+    offset: from a place's number in padded, a row longer than one of out by the filters' reach on both sides.
     """
-    cdef Py_ssize_t i, q, t
-    cdef Py_ssize_t n = weight.shape[0], w = out.shape[1]
-    cdef const float *a
-    cdef const float *b
-    cdef const float *c
-    cdef const float *d
-    cdef float *into
-    cdef float wa, wb, wc, wd
+    cdef Py_ssize_t i
     with nogil:
         for i in range(top, bottom):
-            into = &out[i, 0]
-            for q in range(w):
-                into[q] = 0.0
-            for t in range(0, n, 4):
-                a = &padded[i + down[t], across[t]]
-                b = &padded[i + down[t + 1], across[t + 1]]
-                c = &padded[i + down[t + 2], across[t + 2]]
-                d = &padded[i + down[t + 3], across[t + 3]]
-                wa, wb, wc, wd = weight[t], weight[t + 1], weight[t + 2], weight[t + 3]
-                for q in range(w):
-                    into[q] = (((into[q] + wa * a[q]) + wb * b[q]) + wc * c[q]) + wd * d[q]
+            penink_taps(&padded[i, 0], &offset[0], &weight[0], weight.shape[0], &out[i, 0], out.shape[1])
 
 
 def strongest(const float[:, :, ::1] bank, float sign, float[:, ::1] most, float[:, ::1] mean,
