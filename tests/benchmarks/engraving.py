@@ -1,6 +1,6 @@
 """Engraving measured: ``python -m tests.benchmarks.engraving [TABLE]... [--quick]``.
 
-Tables: steps spacing renderings cost poster tones.
+Tables: steps spacing page renderings cost poster tones.
 
 Tone as the eye sees it at 600 and 1200 dpi, on photographs and a ramp, straight and along the form; the largest step
 of the ramp; how smoothly widths go; time and memory of a blast of 8 inches; bytes a knot; other programs' renderings.
@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import argparse
 import io
+import re
 import resource
 import shutil
 import subprocess
@@ -26,7 +27,7 @@ import skimage.data
 from penink_cli.blasting.blast import blast
 from penink_cli.blasting.engraving import KNOT_PT
 from penink_cli.ground.device import widened
-from penink_cli.ground.model import ColourImage, Directions, Floats, GreyImage, Strokes
+from penink_cli.ground.model import ColourImage, Directions, Floats, GreyImage, Illustration, Layer, Strokes
 from penink_cli.options.textures import find_texture
 from penink_cli.outputs import pdf, postscript, svg
 from penink_cli.outputs.page import lay_out
@@ -35,6 +36,8 @@ from penink_cli.travel.order import ordered
 from tests.benchmarks.form import analytic
 from tests.blasting import measures
 from tests.outputs.rendering import difference, ghostscript, pixels
+from tests.selfdrawing.chromium import Page
+from tests.selfdrawing.drawn import page_svg
 
 PHOTOGRAPHS = ("camera", "coins", "astronaut", "chelsea", "coffee", "rocket", "moon")
 
@@ -120,6 +123,18 @@ def as_poppler(strokes: Strokes, shot: Floats) -> float:
     return difference(255 * (1 - touched**1.5), shot, 300)
 
 
+def browser(path: Path, shape: tuple[int, ...]) -> Floats:
+    """How Chromium draws an SVG so many pixels (h, w) large."""
+    h, w = shape
+    page = path.with_suffix(".html")
+    page.write_text(
+        "<!doctype html><style>body{margin:0}img{display:block}</style><body>"
+        f"<img src={path.name} width={w} height={h} onload=\"document.body.dataset.ready='yes'\">"
+    )
+    with Page(page, w, h) as shown:
+        return shown.screenshot().astype(float)
+
+
 def sizes_and_renderings() -> None:
     """PostScript of at most 40 bytes a knot, 14 compressed; renderings within .5 %, pdftoppm's by its own rule."""
     strokes = engraved(photograph("chelsea"), 4, 600, form("chelsea"))
@@ -149,6 +164,7 @@ def sizes_and_renderings() -> None:
         ):
             if shutil.which(program):
                 shots[program] = pixels(subprocess.run([program, *command], capture_output=True, check=True).stdout)
+        shots["Chromium, SVG"] = browser(at / "a.svg", ours.shape)
         if "pdftoppm" in shots:
             print(f"what pdftoppm is known to do, less pdftoppm: {as_poppler(strokes, shots['pdftoppm']):.2f} %")
         for name, shot in shots.items():
@@ -167,6 +183,26 @@ def spacing() -> None:
             f"  {kind:20} {f['cv']:8.3f} {f['doubled']:32.4f} {f['gaping']:7.4f} {second_difference(strokes):12.3f}",
             flush=True,
         )
+
+
+def page_spacing() -> None:
+    """How even a page's lines lie, the middles of the shapes that it saves: at most .05, or .12 where they curve."""
+    print("a page, flat 35 %, 6 × 6 in: cv (≤ .05 constant, ≤ .12 curved)  doubled  gaping")
+    for kind in ("constant", "circles", "saddle", "fan", "waves", "random"):
+        samples = GreyImage(np.full((24, 24), round(0.65 * 63), np.uint8), 63)
+        layer = Layer(samples, None, find_texture("engraving"), levels=64, directions=analytic(kind))
+        with tempfile.TemporaryDirectory() as folder:
+            text = page_svg(Illustration(432, 432, (layer,)), Path(folder), 432)
+        chains = []
+        for d in re.findall(r' d="M([^"]*)z"', text):
+            outline = np.array(d.split(), float).reshape(-1, 2) * 72 / 25.4
+            half = len(outline) // 2
+            knots = (outline[:half] + outline[::-1][:half]) / 2
+            third = np.diff(knots, axis=0) / 3
+            chain = np.stack([knots[:-1], knots[:-1] + third, knots[1:] - third], axis=1).reshape(-1, 2)
+            chains.append(np.concatenate([chain, knots[-1:]]))
+        f = measures.ray_gaps(Strokes.of(432, 432, chains, np.ones(len(chains))))
+        print(f"  {kind:20} {f['cv']:8.3f} {f['doubled']:32.4f} {f['gaping']:7.4f}", flush=True)
 
 
 POSTER = """
@@ -189,7 +225,9 @@ def poster() -> None:
 
 
 TABLES = {
-    "steps": steps, "spacing": spacing, "renderings": sizes_and_renderings, "cost": cost, "poster": poster,
+    "steps": steps,
+    "spacing": spacing, "page": page_spacing,
+    "renderings": sizes_and_renderings, "cost": cost, "poster": poster,
 }  # fmt: skip
 
 
