@@ -70,13 +70,23 @@ RENDERED = (
     "tests/selfdrawing/", "tests/blasting/test_blast.py", "tests/arrangement/test_detection.py", "tests/test_chain.py",
     "tests/illustration/test_drawing.py", "tests/outputs/test_postscript.py", "tests/outputs/test_vector.py",
     "tests/outputs/test_raster.py", "tests/outputs/test_swelling.py", "tests/outputs/test_device.py",
-    "tests/test_make.py::test_nothing_in_a_name_is_run",
+    "tests/test_make.py::test_nothing_in_a_name_is_run", "tests/outputs/test_inks.py",
+    "tests/blasting/test_engraving.py", "tests/blasting/test_form.py", "tests/blasting/test_rules.py",
+    "tests/blasting/test_stroke_set.py", "tests/illustration/test_layering.py::test_what_is_left_over_",
 )  # fmt: skip
 SLOW = (
     "tests/faults/test_degenerate.py", "tests/faults/test_environment.py", "tests/faults/test_signals.py",
     "tests/faults/test_shortage.py", "tests/formats/test_found.py", "tests/test_make.py",
     "tests/test_readme.py::test_every_block", "tests/test_registries.py",
     "tests/outputs/test_manual.py::test_examples_run", "tests/textures/", "tests/directions/test_detection.py",
+    "tests/composition/test_separation.py::test_draw_in_inks_",
+    "tests/composition/test_separation.py::test_plates_by_name_",
+    "tests/illustration/test_fitting.py", "tests/illustration/test_drawing_again.py", "tests/test_real.py",
+    "tests/illustration/test_archive.py::test_plates_share_", "tests/illustration/test_archive.py::test_pack_twice_",
+    "tests/illustration/test_lines.py::test_loose_and_packed_", "tests/lines/test_detection.py::test_the_list_is_of_",
+    "tests/outputs/test_plotter.py::test_a_drawing_for_a_paper_", "tests/measuring/test_measure.py",
+    "tests/reconstruction/test_enlarge.py::test_random_", "tests/reconstruction/test_enlarge.py::test_a_strong_",
+    "tests/reconstruction/test_thinning.py",
 )  # fmt: skip
 
 

@@ -49,7 +49,7 @@ OWN = {
     "draw": Call("photo.png", ("--width", "0.35in", "--texture", "crosshatch")),
     "compare": Call("photo.strokes.jsonl", ("photo.strokes.jsonl",)),
     "style": Call(None, ("show", "true")),
-    "texture": Call(None, ("make", "brick", "--seed", "1")),
+    "texture": Call(None, ("make", "hair", "--pen", "0.5")),
 }
 # What the files of examples are here, by how their names end.
 STANDS_FOR = {
