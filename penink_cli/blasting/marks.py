@@ -18,7 +18,8 @@ from penink_cli.ground.model import Floats, Strokes
 
 Mask = npt.NDArray[np.bool_]
 
-#: A thing is where the tone exceeds LEVEL. It reaches CORE somewhere, nothing from NEAR_PT to FAR_PT around it is
+#: A thing is where the tone exceeds LEVEL. It reaches CORE somewhere and on the mean of what is deeper than
+#: NEAR_PT, nothing from NEAR_PT to FAR_PT around it is
 #: darker than PAPER, and no place in it is further than HALF_PT from its border.
 LEVEL, CORE, PAPER, NEAR_PT, FAR_PT, HALF_PT = 0.5, 0.75, 0.12, 1.0, 2.5, 7.0
 #: The distance of the rows of strokes, in painted widths.
@@ -95,7 +96,11 @@ def things(tone: Floats, px: float) -> Iterator[tuple[int, int, Mask, Floats]]:
         ring = (off >= NEAR_PT) & (off <= FAR_PT) & (others >= NEAR_PT)
         if ring.any() and float(around[ring].max()) > PAPER:
             continue
-        if float(distance(np.pad(mine, 1)).max()) / px > HALF_PT:
+        depth = distance(np.pad(mine, 1))[1:-1, 1:-1] / px
+        if float(depth.max()) > HALF_PT:
+            continue
+        inner = around[depth > NEAR_PT]
+        if len(inner) and math.fsum(inner.tolist()) < CORE * len(inner):  # an iris around its pupil
             continue
         yield top, left, mine, off
 

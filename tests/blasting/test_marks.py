@@ -117,7 +117,8 @@ def test_what_is_large_soft_grey_or_in_grey_is_left_to_the_hatching():
     none = np.zeros((75, 75), np.float32)
     y, x = np.mgrid[:144, :144] - 71.5
     soft = np.exp(-(x * x + y * y) / 300)
-    for tone in (disc(20), disc(6, ground=0.3), 0.6 * disc(6), soft, np.ones((144, 144)), np.zeros((3, 2))):
+    iris = 0.6 * disc(12) + 0.4 * disc(3)
+    for tone in (disc(20), disc(6, ground=0.3), 0.6 * disc(6), soft, iris, np.ones((144, 144)), np.zeros((3, 2))):
         assert len(marks(tone, SIDE, SIDE, 0.4, 0.0, False, none)) == 0
     assert len(marks(disc(6), SIDE, SIDE, 0.4, 0.0, False, none)) > 0
 
