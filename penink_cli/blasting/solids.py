@@ -34,17 +34,18 @@ PEN_PT = 0.35
 
 def solids(
     tone: Floats, width_pt: float, height_pt: float, pen_pt: float | None, gain_pt: float, ink: Cells,
-    black: float, light: LightThings, everywhere: bool,
+    black: float = BLACK, light: LightThings | None = None, everywhere: bool = True,
 ) -> Strokes:  # fmt: skip
     """Strokes that fill all that is as good as black in the tone (h, w) on a sheet of that size.
 
     pen_pt: the one pen there is, None for one that suits. gain_pt: how much wider the device paints it.
     ink: (rows, columns) what is on the sheet already: what that covers is drawn.
-    black: the tone from which on it is. light: small light things, around which alone it is filled unless `everywhere`.
+    black: the tone from which on it is.
+    light: small light things if there are any, around which alone it is filled unless `everywhere`.
     """
     h, w = tone.shape
     none = Strokes(width_pt, height_pt)
-    if not (tone > black).any() or (light.none and not everywhere):
+    if not (tone > black).any() or not (everywhere or light):
         return none
     fine = max(1.0, marks.FINE * width_pt / w)
     if fine > 1:
@@ -56,10 +57,10 @@ def solids(
     falls = (distance(smooth >= LIGHT) < FALLS_PT * px) & (distance(~core) < FALLS_PT * px)
     # how much darker a place is than what black begins with there, half way up or down where it does
     value = np.where(falls, np.maximum(tone, smooth) - marks.LEVEL, smooth - black) + marks.LEVEL
-    if not light.none:
+    if light:
         near = resample(light.within(FALLS_PT).astype(np.float64), h, w) > 0
         value = np.where(near & falls, tone, value)  # smoothed, it would be smaller
-    if not everywhere:
+    if light and not everywhere:
         value = np.where(resample(light.within(BESIDE_PT).astype(np.float64), h, w) > 0.5, value, 0.0)
     part, boxes = labelled(value > marks.LEVEL)
     count = len(boxes) + 1

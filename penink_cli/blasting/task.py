@@ -86,9 +86,10 @@ class Begun:
         """Solid black: everywhere under layers that reach it, else around small light things."""
         task, layers = self.task, self.task.texture.layers
         dark = layers[-1] if layers and task.texture.engraving is None and layers[-1].spacing_pt == 0 else None
+        light = None if self.light.none else self.light
         black = solids.BLACK if dark is not None and dark.high >= 1.0 else solids.DARKEST
         return solids.solids(
-            task.tone, task.width_pt, task.height_pt, task.pen_pt, MEAN * task.gain, self.sheet.ink, black, self.light,
+            task.tone, task.width_pt, task.height_pt, task.pen_pt, MEAN * task.gain, self.sheet.ink, black, light,
             dark is not None and dark.high >= ALMOST,
         )  # fmt: skip
 
