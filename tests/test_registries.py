@@ -91,6 +91,42 @@ def write(out: Any, layers: Any, page: Any, colours: Any, decimals: float, numbe
     '    "to-ends": Medium(".ends", "Write where strokes begin and end."),\n',
     "test_main.py outputs/test_manual.py faults/test_outputs.py faults/test_overwriting.py",
 )
+OWN = Addition(
+    "penink_cli/commands/to_tally.py",
+    '''"""``penink to-tally``."""
+
+from typing import Any
+
+import click
+
+from penink_cli.ground.streams import writing
+from penink_cli.options.common import output_options
+from penink_cli.options.layers import files_argument, read_layers
+
+
+@click.command(name="to-tally")
+@files_argument
+@output_options
+@click.option("--points", is_flag=True, help="Count the points too.")
+def to_tally(files: tuple[str, ...], output: str | None, points: bool, **_: Any) -> None:
+    """Count strokes.
+
+    One line of text for each layer, whatever page it would lie on.
+
+    \\b
+    penink to-tally photo.strokes.jsonl -o photo.tally
+    """
+    layers = read_layers(files)
+    with writing(output, binary=False) as out:
+        out.write(b"strokes in each layer, from the bottom up, and with --points their points\\n" * 4)
+        for layer in layers:
+            out.write(f"{len(layer)}{f' {len(layer.points)}' * points}\\n".encode())
+''',
+    "penink_cli/outputs/registry.py",
+    '    "to-pdf": ',
+    '    "to-tally": Medium(".tally", "Count strokes.", own=True),\n',
+    "test_main.py outputs/test_manual.py faults/test_outputs.py faults/test_overwriting.py",
+)
 TEXTURE = Addition(
     "penink_cli/textures/kinds/ticks.py",
     '''"""Short upright lines."""
@@ -198,6 +234,16 @@ def test_an_output(tmp_path, photographs):
     copy.pass_tests(OUTPUT.tests, "ends or follows or installed")
 
 
+def test_an_output_with_a_subcommand_of_its_own(tmp_path, photographs):
+    copy = Copy(tmp_path, OWN)
+    assert b"--points" in copy.penink("to-tally", "--help") and b".tally" in copy.penink("draw", "--help")
+    assert "| `to-tally` | strokes | .tally |" in (tmp_path / "README.md").read_text("utf-8")
+    drawn = tmp_path / "coins.tally"
+    copy.penink("draw", str(photographs("coins")), "--width", "0.5in", "-o", str(drawn))
+    assert re.fullmatch(r"(strokes .*\n){4}(\d+\n)+", drawn.read_text())
+    copy.pass_tests(OWN.tests, "tally or follows or installed")
+
+
 def test_a_texture(tmp_path):
     copy = Copy(tmp_path, TEXTURE)
     assert b"ticks        short upright lines\n" in copy.penink("texture", "list")
@@ -216,7 +262,7 @@ def test_a_rule(tmp_path):
     copy.pass_tests(RULE.tests, "frugal or follows or installed")
 
 
-@pytest.mark.parametrize("added", [SUBCOMMAND, OUTPUT, TEXTURE, RULE], ids=lambda added: Path(added.file).stem)
+@pytest.mark.parametrize("added", [SUBCOMMAND, OUTPUT, OWN, TEXTURE, RULE], ids=lambda added: Path(added.file).stem)
 def test_an_addition_is_one_file_and_one_line(added):
     assert added.line.count("\n") == 1 and len(added.line) <= 121
     assert not (ROOT / added.file).exists()

@@ -7,8 +7,8 @@ One line of `OUTPUTS` and one module, `outputs/NAME.py` for `to-NAME`, make an o
     write(out, layers, page, colours, **options): writes the layers, the first at the bottom, on a `Page`
 
 The subcommand, its man page and completion, `draw`'s endings, the README's table and the tests that run over all
-subcommands follow from the line. An output that wants more than this (`own`) brings its subcommand itself,
-`commands/to_name.py`, and calls whatever writes it.
+subcommands follow from the line. An output that wants another subcommand than this (`own`) is that subcommand instead,
+`commands/to_name.py`: it reads, and writes itself or calls what does.
 """
 
 from __future__ import annotations
