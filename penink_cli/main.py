@@ -59,6 +59,9 @@ SUBCOMMANDS = {
     "enlarge": Entry("PGM, edges", "PGM", "Reconstruct the image at any size, sharp at edges and smooth elsewhere."),
     "blast": Entry("PGM, edges, field, lines", "strokes", "Turn grey into pen strokes of the same tone."),
     "separate": Entry("photo", "PGM", "Make the overlay of one layer: grey where it is, white elsewhere."),
+    "balance": Entry(
+        "strokes, PGM", "strokes", "Press the strokes of plates so that together they print the right colours."
+    ),
     "lines": Entry("lines", "strokes", "Turn telling lines into pen strokes for one size on paper."),
     "outline": Entry("edges", "strokes", "Turn discontinuity edges into smooth outline strokes."),
     "render": Entry("illustration", "strokes", "Draw an illustration anew for one size and one device."),

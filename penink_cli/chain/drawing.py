@@ -34,7 +34,7 @@ def draw_one(
     width, max_pixels = options["width"], options["max_pixels"]
     stages = request.stages()
     inks = options["inks"]
-    steps = 9 if inks is None else 6 + 4 * len(inks.names)
+    steps = 9 if inks is None else 6 + 7 * len(inks.names)
     with progress(steps, "draw", quiet or options["quiet"]) as advance:
         shape = read_colours(file, max_pixels).values.shape
         rows, columns = shape[:2]

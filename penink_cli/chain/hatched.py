@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from penink_cli.chain.balanced import balanced
 from penink_cli.chain.filters import found
 from penink_cli.chain.job import Job, least_length
 from penink_cli.chain.plates import Plate
@@ -17,12 +18,20 @@ def hatch(
     over = _over(job, size, edges, lines)
     along = ["--directions", directions] if directions else []
     white = ["--lines", lines] if lines else []
-    hatchings = []
-    for plate in plates:
-        grey = _enlarged(job, plate, edges)
-        ink = [word for name in over for word in ("--ink", name)] if plate is plates[-1] else []
-        told = [*job.on_paper, *job.device, *job.words("blast", "blast"), *plate.words(), *along, *white, *ink]
-        hatchings.append(job.run("blast", ["-e", edges, *told, grey], plate.named("hatching.jsonl")))
+    greys = [_enlarged(job, plate, edges) for plate in plates]
+
+    def hatched(greys: list[str], wanted: str) -> list[str]:
+        drawn = []
+        for plate, grey in zip(plates, greys):
+            ink = [word for name in over for word in ("--ink", name)] if plate is plates[-1] else []
+            told = [*job.on_paper, *job.device, *job.words("blast", "blast"), *plate.words(), *along, *white, *ink]
+            drawn.append(job.run("blast", ["-e", edges, *told, grey], plate.named(wanted)))
+        return drawn
+
+    if job.inks is None:
+        hatchings = hatched(greys, "hatching.jsonl")
+    else:
+        hatchings = balanced(job, plates, greys, over, hatched)
     if not any(job.chain.lines(name) > 1 for name in (*hatchings, *over)):
         warn("a drawing without a stroke: the photo is paper white, or was made so")
     by = writer(job.ending)

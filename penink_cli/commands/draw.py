@@ -129,7 +129,8 @@ def draw(
     is interrupted; only what has changed is made anew, and a page reloads itself in the browser.
 
     With --inks it is drawn in colours, a plate an ink, whose tones are the photo's; lines are the
-    darkest ink's, and the texture is crosshatch unless another is named.
+    darkest ink's, and the texture is crosshatch unless another is named. Plates are drawn twice, so that
+    together they have the photo's colours (see penink balance).
 
     \b
     penink draw photo.jpg -o photo.pdf

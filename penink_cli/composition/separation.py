@@ -19,8 +19,9 @@ from functools import lru_cache
 import numpy as np
 import numpy.typing as npt
 
+from penink_cli.ground import colour
 from penink_cli.ground.codes import Colour
-from penink_cli.ground.colour import LEAST, XYZ, lab_of_light, linear, root
+from penink_cli.ground.colour import XYZ, lab_of_light, linear, root
 from penink_cli.ground.model import Floats
 
 WHITE: Colour = (1.0, 1.0, 1.0)
@@ -28,7 +29,7 @@ WHITE: Colour = (1.0, 1.0, 1.0)
 _SIDE = 33  # grid points along each of red, green and blue, evenly far apart as they are stored
 _NODES = _SIDE * _SIDE * _SIDE
 _DARKEST, _NEUTRAL = 35.0, 15.0  # lightness and chroma up to which an ink is black
-_LEAST = 0.004  # the least that an ink lets through: none is perfect, and logarithms of it exist
+LEAST = 0.004  # the least that an ink lets through: none is perfect, and logarithms of it exist
 #: Prices, as squared distances in Lab: of one ink all over, of all black too much or too little.
 _INK, _BLACK = 0.05, 4.0
 _TRIES = 30
@@ -92,7 +93,7 @@ def printed(amount: Floats, inks: Sequence[Colour], paper: Colour = WHITE) -> Fl
 
 def _passed(inks: Sequence[Colour]) -> Floats:
     """What each ink (n, 3) lets through."""
-    return np.asarray(np.maximum(linear(np.array(inks)), _LEAST))
+    return np.asarray(np.maximum(linear(np.array(inks)), LEAST))
 
 
 def is_black(ink: Colour) -> bool:
@@ -133,9 +134,10 @@ def _descended(
     damping = np.full(m, 1.0)
     cost = _cost(amount, passed, paper, wanted, keys, aim)
     for _ in range(_TRIES):
-        slopes, off = _slopes(amount, passed, paper, wanted)
-        gradient = [_INK / 2 + _dot(slopes[i], off) for i in range(n)]
-        square = [[_dot(slopes[i], slopes[k]) for k in range(i + 1)] for i in range(n)]
+        rises = slopes(amount, passed, paper)
+        off = lab_of_light(_light(amount, passed, paper)) - wanted
+        gradient = [_INK / 2 + _dot(rises[i], off) for i in range(n)]
+        square = [[_dot(rises[i], rises[k]) for k in range(i + 1)] for i in range(n)]
         for k in keys:
             gradient[k] = gradient[k] + _BLACK * (amount[k] - aim)
             square[k][k] = square[k][k] + _BLACK
@@ -150,39 +152,40 @@ def _descended(
     return amount, cost
 
 
-def _cost(
-    amount: Floats, passed: Floats, paper: Floats, wanted: Floats, keys: list[int], aim: Floats
-) -> Floats:
-    light = np.broadcast_to(paper, wanted.shape).copy()
+def _cost(amount: Floats, passed: Floats, paper: Floats, wanted: Floats, keys: list[int], aim: Floats) -> Floats:
     total = np.zeros(len(wanted))
-    for i in range(len(amount)):
-        light *= 1.0 - amount[i][:, None] * (1.0 - passed[i])
-        total += _INK * amount[i]
+    for share in amount:
+        total += _INK * share
     for k in keys:
         total += _BLACK * (amount[k] - aim) * (amount[k] - aim)
-    off = lab_of_light(light) - wanted
+    off = lab_of_light(_light(amount, passed, paper)) - wanted
     return total + _dot(off, off)
 
 
-def _slopes(amount: Floats, passed: Floats, paper: Floats, wanted: Floats) -> tuple[list[Floats], Floats]:
-    """What Lab (m, 3) changes by with each amount, and how far it is off."""
-    through = [1.0 - amount[i][:, None] * (1.0 - passed[i]) for i in range(len(amount))]
-    light = np.broadcast_to(paper, wanted.shape).copy()
-    for part in through:
-        light *= part
+def _light(amount: Floats, passed: Floats, paper: Floats | float = 1.0) -> Floats:
+    """The light (m, 3) of amounts (n, m)."""
+    light = np.ones((amount.shape[1], 3)) * paper
+    for share, through in zip(amount, passed, strict=True):
+        light *= 1.0 - share[:, None] * (1.0 - through)
+    return light
+
+
+def slopes(amount: Floats, passed: Floats, paper: Floats | float = 1.0) -> list[Floats]:
+    """What Lab (m, 3) changes by with each of the amounts (n, m) of inks that let that much (n, 3) through."""
+    light = _light(amount, passed, paper)
     tristimulus = [r * light[:, 0] + g * light[:, 1] + b * light[:, 2] for r, g, b in XYZ]
     rise = []
     for t in tristimulus:
         f = root(t)
-        rise.append(np.where(t > LEAST, 1.0 / (3.0 * f * f), 24389 / 27 / 116))
-    slopes = []
-    for i, part in enumerate(through):
-        change = -light / part * (1.0 - passed[i])
+        rise.append(np.where(t > colour.LEAST, 1.0 / (3.0 * f * f), 24389 / 27 / 116))
+    found = []
+    for share, through in zip(amount, passed, strict=True):
+        change = -light / (1.0 - share[:, None] * (1.0 - through)) * (1.0 - through)
         x, y, z = (
             rise[k] * (r * change[:, 0] + g * change[:, 1] + b * change[:, 2]) for k, (r, g, b) in enumerate(XYZ)
         )
-        slopes.append(np.stack([116 * y, 500 * (x - y), 200 * (y - z)], axis=-1))
-    return slopes, lab_of_light(light) - wanted
+        found.append(np.stack([116 * y, 500 * (x - y), 200 * (y - z)], axis=-1))
+    return found
 
 
 def _equations(
@@ -240,4 +243,3 @@ def lightest_first(inks: Sequence[Colour]) -> list[int]:
     """Numbers of the inks, the lightest first: it goes on paper first, and its pen is not soiled by another's ink."""
     lightness = [lab_of_light(linear(np.array(ink))).tolist()[0] for ink in inks]
     return sorted(range(len(inks)), key=lambda i: -lightness[i])
-

@@ -42,6 +42,7 @@ OWN = {
     "to-ps": Call("photo.strokes.jsonl"),
     "to-pgm": Call("photo.strokes.jsonl", ("--dpi", "100")),
     "to-png": Call("photo.strokes.jsonl", ("--dpi", "100")),
+    "balance": Call("photo.strokes.jsonl", ("--plate", "1", "--tone", "samples.pgm")),
     "separate": Call("photo.png", ("--grey", "0,0.5")),
     "lines": Call("photo.lines.json", ("--width", "0.35in")),
     "outline": Call("photo.edges.json", ("--width", "0.35in")),

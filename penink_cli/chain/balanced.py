@@ -1,0 +1,37 @@
+"""Plates of several inks, drawn so that together they have the right colours."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from penink_cli.chain.job import Job
+from penink_cli.chain.plates import Plate
+from penink_cli.chain.words import said
+
+
+def balanced(
+    job: Job, plates: list[Plate], greys: list[str], over: list[str], hatched: Callable[[list[str], str], list[str]]
+) -> list[str]:
+    """The strokes of plates that are drawn twice, by corrected tones, and pressed.
+
+    greys: what each is blasted from. over: strokes that are ink already. hatched: draws such greys, under names of
+    that ending. Who asks for a tone curve wants other colours, and gets them uncorrected; one pen is pressed evenly.
+    """
+    told = [word for grey in greys for word in ("--tone", grey)]
+    told += [word for name in over for word in ("--ink", name)]
+    numbers = list(enumerate(plates, 1))
+    gamma = job.stages["blast"].get("gamma")
+    drawn = hatched(greys, "draft.jsonl" if gamma is None else "hatching.jsonl")
+    if gamma is None:
+        corrected = [
+            job.run("balance", ["--correct", *told, "--plate", str(i), *drawn], plate.named("corrected.pgm"))
+            for i, plate in numbers
+        ]
+        drawn = hatched(corrected, "hatching.jsonl")
+    else:
+        told += ["--gamma", said(gamma)]
+    if "pen" in job.given:
+        return drawn
+    return [
+        job.run("balance", [*told, "--plate", str(i), *drawn], plate.named("pressed.jsonl")) for i, plate in numbers
+    ]

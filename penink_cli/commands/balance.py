@@ -1,0 +1,139 @@
+"""``penink balance``."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import click
+
+from penink_cli.ground.errors import ParameterError
+from penink_cli.ground.streams import reading, source_name, writing
+from penink_cli.options.common import Finite, output_options, processors, threads_option
+from penink_cli.options.inputs import only_one_standard_input
+from penink_cli.options.layers import files_argument
+from penink_cli.options.sheet import check_sheet
+
+if TYPE_CHECKING:
+    from penink_cli.ground.model import Floats, Strokes
+
+_made: tuple[object, list[Strokes] | list[Floats]] | None = None  # of the last plates: one call of `draw` wants each
+
+
+@click.command()
+@files_argument
+@click.option(
+    "--plate", type=click.IntRange(1), required=True, metavar="N", help="Write that one of the files, from 1."
+)
+@click.option(
+    "--tone",
+    "tone_files",
+    type=click.Path(allow_dash=True),
+    multiple=True,
+    metavar="FILE",
+    help="The plate that a file's strokes were made of, by separate; once for each file, in their order.",
+)
+@click.option(
+    "--correct",
+    is_flag=True,
+    help="Write instead the tone that the plate is to be blasted anew with: all of them then make up for what is off.",
+)
+@click.option("--gamma", type=Finite(0.05, 20), default=1.0, metavar="G", help="That blast was told of the plates.")
+@click.option(
+    "--ink",
+    "ink_files",
+    type=click.Path(allow_dash=True),
+    multiple=True,
+    metavar="FILE",
+    help="Strokes of the last file's ink that are on the paper too, such as outlines, and stay as they are.",
+)
+@threads_option
+@output_options
+def balance(
+    files: tuple[str, ...],
+    output: str | None,
+    max_pixels: int,
+    quiet: bool,
+    plate: int,
+    correct: bool,
+    tone_files: tuple[str, ...],
+    gamma: float,
+    ink_files: tuple[str, ...],
+    threads: int | None,
+) -> None:
+    """Press the strokes of plates a little more or less, so that together they print the right colours.
+
+    FILEs are the strokes of the plates, each with its --color, drawn for themselves; what each is wrong by, and what
+    they do to one another, is set right in all by widths that change by some percent. With --correct the plates' tones
+    are changed instead, to be drawn anew, as must be where one pen draws all. One plate is written; call it again for
+    each of the others.
+
+    \b
+    penink balance --plate 1 --tone blue.pgm --tone red.pgm blue.jsonl red.jsonl -o blue-pressed.jsonl
+    penink balance --plate 2 --tone blue.pgm --tone red.pgm blue.jsonl red.jsonl -o red-pressed.jsonl
+    penink balance --plate 1 --correct --tone blue.pgm --tone red.pgm blue.jsonl red.jsonl -o blue-corrected.pgm
+    """
+    from penink_cli.formats import pgm, strokes
+    from penink_cli.ground.model import GreyImage, Strokes
+
+    files = files or ("-",)
+    if plate > len(files):
+        raise click.UsageError(f"--plate {plate}: there are {len(files)} files")
+    if len(tone_files) != len(files):
+        raise click.UsageError(f"{len(files)} files of strokes need as many --tone, not {len(tone_files)}")
+    only_one_standard_input(*files, *tone_files, *ink_files)
+    if correct and gamma != 1.0:
+        raise click.UsageError("--correct does not go with --gamma: the tone is the one that is blasted")
+    workers = threads or processors()
+    made = _balanced(files, tone_files, gamma, ink_files, max_pixels, workers, quiet, correct)[plate - 1]
+    with writing(output, binary=correct) as out:
+        if isinstance(made, Strokes):
+            strokes.write(out, made)
+        else:
+            pgm.write(out, GreyImage.from_grey(1.0 - made))
+
+
+def _balanced(
+    files: Sequence[str], tone_files: Sequence[str], gamma: float, ink_files: Sequence[str], max_pixels: int,
+    workers: int, quiet: bool, correct: bool,
+) -> list[Strokes] | list[Floats]:  # fmt: skip
+    """The strokes of all files, balanced, or their tones corrected."""
+    global _made  # noqa: PLW0603
+    contents = []
+    for path in (*files, *tone_files, *ink_files):
+        with reading(path) as stream:
+            contents.append(stream.read())
+    key = contents, len(files), gamma, max_pixels, correct
+    if _made is not None and _made[0] == key:
+        return _made[1]
+    from penink_cli.blasting.balancing import ROUNDS, Plate, balanced, corrected
+    from penink_cli.formats import pgm, strokes
+    from penink_cli.ground.codes import of_code
+    from penink_cli.ground.model import Strokes
+    from penink_cli.illustration.drawing import tone_curve
+    from penink_cli.options.progress import progress
+
+    n = len(files)
+    named = list(zip((*files, *tone_files, *ink_files), map(io.BytesIO, contents), strict=True))
+    drawn = [strokes.read(stream, source_name(path)) for path, stream in (*named[:n], *named[2 * n :])]
+    greys = [pgm.read(stream, source_name(path), max_pixels) for path, stream in named[n : 2 * n]]
+    check_sheet(drawn[0].width, drawn[0].height, max_pixels)
+    for path, layer in zip((*files, *ink_files), drawn, strict=True):
+        if (layer.width, layer.height) != (drawn[0].width, drawn[0].height):
+            size = f"{layer.width:g} x {layer.height:g} pt, the first one {drawn[0].width:g} x {drawn[0].height:g}"
+            raise ParameterError(f"{source_name(path)}: a sheet of {size}")
+    for path, grey in zip(tone_files, greys, strict=True):
+        if grey.values.shape != greys[0].values.shape:
+            raise ParameterError(f"{source_name(path)}: plates of one photo have one size; this has another")
+    there = Strokes.joined(drawn[n:]) if drawn[n:] else None
+    plates = [
+        Plate(layer, of_code(layer.color or "#000000"), tone_curve(grey, gamma), there if i == n - 1 else None)
+        for i, (layer, grey) in enumerate(zip(drawn[:n], greys, strict=True))
+    ]
+    if correct:
+        _made = key, corrected(plates, drawn[0].device_dpi, workers)
+        return _made[1]
+    with progress(ROUNDS, "balancing", quiet) as more:
+        _made = key, balanced(plates, drawn[0].device_dpi, workers, lambda: more(1))
+    return _made[1]
