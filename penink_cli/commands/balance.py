@@ -62,7 +62,7 @@ def balance(
     ink_files: tuple[str, ...],
     threads: int | None,
 ) -> None:
-    """Press the strokes of plates a little more or less, so that together they print the right colours.
+    """Press the strokes of plates so that together they print the right colours.
 
     FILEs are the strokes of the plates, each with its --color, drawn for themselves; what each is wrong by, and what
     they do to one another, is set right in all by widths that change by some percent. With --correct the plates' tones
