@@ -19,6 +19,7 @@ rules/                  best, or what --rule says
   pressure              the hand's, at last
   threshold             what a picture that draws itself does; screens is its table, constants its numbers
 outlines                strokes along edges
+balancing               plates of several inks looked at together: tones corrected, strokes pressed
 
 For all of these curves cuts and samples Béziers, and curve_fitting makes them. reach says which tones a texture can
 make, pens gives it finer ones for small prints.

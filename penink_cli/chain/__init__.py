@@ -10,6 +10,7 @@ commands/draw             options, and what does not go together
     found                     grey, edges, lines, directions
     plates                    the grey of each ink
     hatched                   strokes over the hatching, then the hatching
+      balanced                  that of several inks: drawn twice, then pressed
     manifest                  or the illustration, which is packed or draws itself
       filters.Chain.run         one filter: words.words → its command → a name on the workbench
         kept.Kept                 what need not run again
