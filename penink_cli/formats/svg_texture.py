@@ -68,21 +68,24 @@ def _parse(text: bytes) -> Any:
 
 
 def _seen(text: bytes) -> bytes:
-    """The drawing without what its parser would show: what stands in a group of no opacity, symbols outside of defs."""
-    if b"opacity" not in text and b"symbol" not in text:
+    """The drawing without what its parser would show: what stands in a group of no opacity or display, and symbols
+    outside of defs. What a group hides so no child can show again, whatever is said of the child itself.
+    """
+    if not any(word in text for word in (b"opacity", b"display", b"symbol")):
         return text
     tree = ElementTree.fromstring(text)
+    rules = _rules(tree)
     changed = False
     for parent in list(tree.iter()):
         for i, element in enumerate(parent):
             if not isinstance(element.tag, str):
                 continue
-            pairs = (part.partition(":") for part in element.get("style", "").split(";"))
-            own = {name.strip(): value.strip() for name, _, value in pairs}
-            opacity = own.get("opacity", element.get("opacity", "1")).strip()
-            if len(element) and re.fullmatch(r"0*\.?0*%?", opacity) and re.search("0", opacity):
-                element.set("style", "display:none")
-                element.set("display", "none")
+            if len(element) and (_is_none(_said(element, rules, "opacity", "1"))
+                                 or _said(element, rules, "display", "") == "none"):  # fmt: skip
+                for hidden in element.iter():
+                    if isinstance(hidden.tag, str):
+                        hidden.set("style", "display:none")
+                        hidden.set("display", "none")
                 changed = True
             kind = element.tag.rpartition("}")
             if kind[2] == "symbol" and parent.tag != f"{kind[0]}{kind[1]}defs":
@@ -95,6 +98,39 @@ def _seen(text: bytes) -> bytes:
     ElementTree.register_namespace("", "http://www.w3.org/2000/svg")
     ElementTree.register_namespace("xlink", "http://www.w3.org/1999/xlink")
     return ElementTree.tostring(tree)
+
+
+def _is_none(opacity: str) -> bool:
+    return bool(re.fullmatch(r"[-+]?0*\.?0*%?|-.*", opacity) and re.search("[0-9]", opacity))
+
+
+def _rules(tree: ElementTree.Element) -> list[tuple[str, dict[str, str]]]:
+    """Simple selectors of the drawing's style sheets, a tag, .class, #id or *, and what each says, in their order."""
+    rules = []
+    for element in tree.iter():
+        if isinstance(element.tag, str) and element.tag.rpartition("}")[2] == "style":
+            sheet = re.sub(r"/\*.*?\*/", "", element.text or "", flags=re.DOTALL)
+            for selectors, said in re.findall(r"([^{}]*)\{([^{}]*)\}", sheet):
+                rules += [(selector.strip(), _declared(said)) for selector in selectors.split(",")]
+    return rules
+
+
+def _declared(text: str) -> dict[str, str]:
+    pairs = (part.partition(":") for part in text.split(";"))
+    return {name.strip(): value.replace("!important", "").strip() for name, _, value in pairs}
+
+
+def _said(element: ElementTree.Element, rules: list[tuple[str, dict[str, str]]], name: str, usual: str) -> str:
+    """What is said of an element itself, by its style, else by id, class or tag in a style sheet, else by attribute."""
+    own = _declared(element.get("style", ""))
+    if name in own:
+        return own[name]
+    classes = {f".{word}" for word in element.get("class", "").split()}
+    for known in ({f"#{element.get('id')}"}, classes, {element.tag.rpartition("}")[2]}, {"*"}):
+        found = [said[name] for selector, said in rules if selector in known and name in said]
+        if found:
+            return found[-1]
+    return element.get(name, usual).strip()
 
 
 def _texture(drawing: Any, name: str, pen_pt: float | None, whole: bool, report: Callable[[str], None]) -> Texture:

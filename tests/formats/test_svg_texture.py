@@ -33,6 +33,12 @@ NO_INK = {
     "opacity 0%": '<path d="M2 8h6" style="stroke:#000;opacity:0%"/>',
     "a class of opacity 0": '<style>.a{opacity:0}</style><path class="a" d="M2 8h6" stroke="#000"/>',
     "a group of opacity 0": '<g opacity="0"><path opacity="1" d="M2 8h6" stroke="#000"/></g>',
+    "a group's class": '<style>.a{opacity:0}</style><g class="a"><path opacity="1" d="M2 8h6" stroke="#000"/></g>',
+    "a group's class over the child's": '<style>.a{opacity:0}.b{opacity:1}</style><g class="a"><path class="b" '
+    'd="M2 8h6" stroke="#000"/></g>',
+    "a group that is not displayed": '<g display="none"><path display="inline" d="M2 8h6" stroke="#000"/></g>',
+    "a class that is not displayed": '<style>.a{display:none}</style><g class="a"><g style="display:inline"><path '
+    'd="M2 8h6" stroke="#000"/></g></g>',
     "a group's style": '<g style="opacity: 0.0; fill:none"><path opacity="1" d="M2 8h6" stroke="#000"/></g>',
     "stroke-opacity 0": '<path d="M2 8h6" fill="none" stroke="#000" stroke-opacity="0"/>',
     "transparent": '<path d="M2 8h6" fill="none" stroke="transparent"/>',
@@ -57,6 +63,8 @@ NO_INK = {
 DRAWN = {
     "in a hidden group, visible": '<g visibility="hidden"><path visibility="visible" d="M2 8h6" stroke="#000"/></g>',
     "currentColor": '<g color="#123" stroke="currentColor"><path fill="none" d="M2 8h6"/></g>',
+    "a class over an attribute": '<style>.a{opacity:.5}</style><g class="a" opacity="0"><path d="M2 8h6" '
+    'stroke="#000"/></g>',
     "half transparent": '<g opacity="0.5"><path d="M2 8h6" stroke="#000" stroke-opacity="0.5"/></g>',
     "over a group's none": '<g stroke="none"><path d="M2 8h6" stroke="#000"/></g>',
     "a symbol in use": '<symbol id="s"><path d="M2 8h6" stroke="#000"/></symbol><use xlink:href="#s"/>',
