@@ -41,6 +41,9 @@ FLOOR = 0.25
 PROBE, MOST = 0.1, 1.5
 #: How hard it is to change a plate's tone: what is off by less than the root of it, in Lab, is mended in part.
 CAUTION = 30.0
+#: And no tone is changed by more than this: what is left white on purpose, as light lines are, darkens its surroundings
+#: no further.
+MOST_CHANGED = 0.1
 SAMPLE_PT = 2.0
 LEAST_PT = 0.01
 
@@ -105,7 +108,8 @@ def corrected(plates: Sequence[Plate], device_dpi: float | None = None, workers:
     result = []
     for plate, share in zip(plates, shares, strict=True):
         change = resample(share.reshape(press.rows, press.columns), *plate.tone.shape)
-        result.append(np.asarray(np.clip(plate.tone + change, 0.0, 1.0)))
+        tone = plate.tone + np.clip(change, -MOST_CHANGED, MOST_CHANGED)
+        result.append(np.asarray(np.clip(tone, 0.0, 1.0)))
     return result
 
 
