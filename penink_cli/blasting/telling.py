@@ -19,6 +19,8 @@ from penink_cli.lines.strokes import line_strokes
 WHITE = LineChoice(pen_pt=1.8, density=0.12, per_inch2=5.0)
 #: They show where the tone around, over a Gaussian of this σ, exceeds DARK, and in full from FULL on.
 AROUND_PT, DARK, FULL = 3.0, 0.35, 0.65
+#: The part of them that has to show for one to be worth keeping.
+LEAST_SHOWN = 0.3
 #: What is no further than this from a dark line is told by it.
 TOLD_PT = 1.6
 
@@ -26,7 +28,7 @@ TOLD_PT = 1.6
 def with_room(lines: Lines, width_pt: float, height_pt: float, tone: Picture, threads: int) -> Ints:
     """Indices of the lines, dark and light, that a drawing of that size, and so a smaller one, has room for.
 
-    tone: (h, w) of the photo. A light line whose ground is nowhere darker than DARK does not show.
+    tone: (h, w) of the photo. Light lines of which less than LEAST_SHOWN shows on it are left away.
     """
     dark = chosen(lines, width_pt, height_pt, LineChoice())
     light = chosen(lines, width_pt, height_pt, WHITE, white=True)
@@ -34,8 +36,11 @@ def with_room(lines: Lines, width_pt: float, height_pt: float, tone: Picture, th
     around = blurred(tone, AROUND_PT * w / width_pt, threads)
     at = np.floor(lines.points * (w / lines.width, h / lines.height)).astype(np.int64)
     at = np.clip(at, 0, (w - 1, h - 1))
-    there = around[at[:, 1], at[:, 0]]
-    shown = [i for i in light.tolist() if there[lines.first[i] : lines.first[i + 1]].max() > DARK]
+    there = np.cumsum(np.append(0, np.rint(_shown(around[at[:, 1], at[:, 0]]) * 1024).astype(np.int64)))
+    count = np.diff(lines.first)
+    shown = [
+        i for i in light.tolist() if there[lines.first[i + 1]] - there[lines.first[i]] >= LEAST_SHOWN * 1024 * count[i]
+    ]
     return np.sort(np.concatenate([dark, np.array(shown, np.int64)]))
 
 
@@ -53,10 +58,14 @@ def told(
     tone = tone if fine else resample(tone, rows, columns)
     around = blurred(resample(tone, rows, columns).astype(np.float32), AROUND_PT / CELL_PT, threads)
     light = line_strokes(lines, width_pt, height_pt, WHITE, white=True)
-    shown = np.clip((around - DARK) / (FULL - DARK), 0, 1) * coverage(light, rows, columns)
+    shown = _shown(around) * coverage(light, rows, columns)
     left = tone * resample((1 - shown).astype(np.float64), *tone.shape)
     near = np.zeros((rows, columns), np.bool_)
     if ink is not None and len(ink):
         near = coverage(ink, rows, columns, 2 * TOLD_PT) > 0.5
     return left, near
 
+
+def _shown(around: Picture) -> Picture:
+    """How much of a light line shows where the tone around it is so dark."""
+    return np.clip((around - np.float32(DARK)) / np.float32(FULL - DARK), 0, 1)

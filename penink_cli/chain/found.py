@@ -9,7 +9,7 @@ COMPOSED_DPI = 288.0  # as `compose` has it
 POSTER_DPI = 1152.0  # pixels an inch that an illustration is made from: those of a drawing four times as wide
 # Squared grey levels a bit that a chain of edges of an archive saves; where --max-bytes makes it coarser afterwards.
 WORTH, RICH_WORTH = 120.0, 40.0
-FIELD_SIDE = 64  # samples of directions along the longer side of an archive
+FIELD_SIDE = 48  # samples of directions along the longer side of an archive
 
 
 def grey(job: Job, photo: list[str], shape: tuple[int, ...]) -> tuple[str, tuple[int, int]]:

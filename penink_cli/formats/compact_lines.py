@@ -1,25 +1,31 @@
-"""Telling lines in as few bytes as they can be: a member of a packed illustration, ``PIl2`` (see `compact`).
+"""Telling lines in as few bytes as they can be: a member of a packed illustration, ``PIl3`` (see `compact`).
 
 Three whole numbers, W, H and how many lines, then code. Lines come by falling rank, so that the list of a smaller
 print is the beginning of that of a larger one. Points lie on a grid that has so many steps to the root of the frame's
-area, and are as few as stay within a step of those given; ranks and weights are kept in few steps. ``PIl1``, which
-had finer steps and all points, is read.
+area, and are as few as keep the curve through them, which is what is drawn, near those given; ranks are kept in
+eighths of an octave, weights in thirds. Lines whose points all lie on the grid are written as they are: what is read
+is written as the same bytes. ``PIl2``, which had finer steps and the points of polygons, and ``PIl1``, which had all
+points, are read.
 """
 
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from penink_cli.formats import lines as lines_format
 from penink_cli.formats._compiled.compact import Coder
 from penink_cli.formats.compact import MAX_GRID, _check_end, _finished, _header, _numbers
+from penink_cli.geometry import curves
 from penink_cli.ground.errors import FormatError, LimitError
-from penink_cli.ground.model import Lines
+from penink_cli.ground.model import Floats, Ints, Lines
 
-LINES, LINES_1 = b"PIl2", b"PIl1"
+LINES, LINES_2, LINES_1 = b"PIl3", b"PIl2", b"PIl1"
+ALL_LINES = LINES, LINES_2, LINES_1
 MOST_RANK = 1000
 MAX_POINTS = 1 << 20
 
@@ -27,10 +33,10 @@ _RANK, _KIND, _COUNT, _BREADTH, _X, _Y, _MAIN, _ASIDE, _MAIN_TURN, _ASIDE_TURN, 
 
 
 class _Steps(NamedTuple):
-    """What numbers are kept in: grid steps to the root of the frame's area, steps of rank and of weight to 1."""
+    """What numbers are kept in: grid steps to the root of the frame's area, ranks, steps of weight to 1."""
 
     side: int
-    rank: int
+    ranks: Floats
     weight: int
 
     def grid(self, width: int, height: int) -> tuple[int, int]:
@@ -39,28 +45,36 @@ class _Steps(NamedTuple):
         return columns, rows
 
 
-_WRITTEN = _Steps(880, 4, 3)
-_STEPS = {LINES: _WRITTEN, LINES_1: _Steps(1280, 16, 7)}
+# Of ranks the next higher one is kept: at a lower one a line that there is room for might stay away. Old ones are even.
+_RANKS = np.array([0.0, *(round(0.25 * 2 ** (k / 8), 4) for k in range(96)), MOST_RANK])
+_WRITTEN = _Steps(640, _RANKS, 3)
+_STEPS = {
+    LINES: _WRITTEN,
+    LINES_2: _Steps(880, np.arange(MOST_RANK * 4 + 1) / 4, 3),
+    LINES_1: _Steps(1280, np.arange(MOST_RANK * 16 + 1) / 16, 7),
+}
+_NEAR = 0.75  # steps that a line may lie beside the curve that is kept: half a point at 6 in, less than its pen
+_LEAST_RING = 6  # points, of a line that closes: what has fewer is drawn open
 
 
 def lines_bytes(lines: Lines) -> bytes:
     """Telling lines at the precision they are kept at, those that it leaves no length left away. Raises LimitError."""
     columns, rows = _WRITTEN.grid(lines.width, lines.height)
     scale = np.array([columns / lines.width, rows / lines.height])
-    grid = np.floor(lines.points * scale + 0.5).astype(np.int64)
-    weights = np.floor(lines.weight * _WRITTEN.weight + 0.5).astype(np.int64)
+    kept, at, weights = _fewest(lines, scale)
     broad = np.floor(lines.breadth * (2 * math.sqrt(float(scale[0] * scale[1]))) + 0.5).astype(np.int64)
-    ranks = np.floor(np.minimum(lines.rank, MOST_RANK) * _WRITTEN.rank + 0.5).astype(np.int64)
+    ranks = np.searchsorted(_WRITTEN.ranks, np.minimum(lines.rank, MOST_RANK))
     items = []
     for i in np.argsort(-lines.rank, kind="stable").tolist():
-        mine = slice(int(lines.first[i]), int(lines.first[i + 1]))
-        points = grid[mine]
-        keep = np.ones(len(points), bool)
-        keep[1:] = (points[1:] != points[:-1]).any(axis=1)
+        mine = np.flatnonzero(kept[lines.first[i] : lines.first[i + 1]]) + int(lines.first[i])
+        points = at[mine]
+        moves = np.ones(len(points), bool)
+        moves[1:] = (points[1:] != points[:-1]).any(axis=1)
         breadth = max(int(broad[i]), 1) if lines.breadth[i] > 0 else 0
-        if keep.sum() >= 2 or breadth:
-            path, pressed = _fewest(points[keep].tolist(), weights[mine][keep].tolist())
-            items.append((int(ranks[i]), int(lines.white[i]), breadth, path, pressed))
+        if moves.sum() >= 2 or breadth:
+            items.append(
+                (int(ranks[i]), int(lines.white[i]), breadth, points[moves].tolist(), weights[mine][moves].tolist())
+            )
     if sum(len(item[3]) for item in items) > MAX_POINTS:
         raise LimitError(f"telling lines of more than {MAX_POINTS} points")
     coder = Coder()
@@ -79,9 +93,9 @@ def lines_bytes(lines: Lines) -> bytes:
 
 def lines_from(data: bytes) -> Lines:
     """What `lines_bytes` wrote, each line sound. Raises FormatError, and LimitError."""
-    first = data[:4] == LINES_1
-    kept = _STEPS[LINES_1 if first else LINES]
-    (width, height, count), rest = _header(data, LINES_1 if first else LINES, 3)
+    magic = data[:4] if data[:4] in _STEPS else LINES
+    first, kept = magic == LINES_1, _STEPS[magic]
+    (width, height, count), rest = _header(data, magic, 3)
     if not (1 <= width <= lines_format.MAX_SIDE and 1 <= height <= lines_format.MAX_SIDE):
         raise FormatError(f"lines of a frame {width} x {height}")
     if count > 8 * len(rest) + 64:
@@ -101,7 +115,7 @@ def lines_from(data: bytes) -> Lines:
         kind = coder.number(0, _KIND)
         breadth = coder.number(0, _BREADTH) if kind & 2 else 0
         size = coder.number(0, _COUNT, int(kind & 2 > 0))
-        if not (0 <= last <= MOST_RANK * kept.rank and 0 <= kind <= 3 and breadth >= 0 and size > 0):
+        if not (0 <= last < len(kept.ranks) and 0 <= kind <= 3 and breadth >= 0 and size > 0):
             raise FormatError(f"line {len(ranks)} is damaged")
         if len(points) + size > MAX_POINTS:
             raise LimitError(f"telling lines of more than {MAX_POINTS} points")
@@ -123,48 +137,56 @@ def lines_from(data: bytes) -> Lines:
     np.cumsum(sizes, out=begins[1:])
     step = np.array([width / columns, height / rows])
     found = Lines(
-        width, height, np.array(points, np.float64).reshape(-1, 2) * step, begins,
+        width, height, np.minimum(np.array(points, np.float64).reshape(-1, 2) * step, (width, height)), begins,
         np.array(weights, np.float64) / kept.weight,
-        np.array(ranks, np.float64) / kept.rank, np.array(whites, np.bool_),
+        kept.ranks[np.array(ranks, np.int64)], np.array(whites, np.bool_),
         np.array(breadths, np.float64) * (math.sqrt(float(step[0] * step[1])) / 2),
     )  # fmt: skip
     lines_format.check(found)
     return found
 
 
-def _fewest(points: list[list[int]], weights: list[int]) -> tuple[list[list[int]], list[int]]:
-    """The fewest points between which the path, and the weight along it, stays within a step of those given.
+def _fewest(lines: Lines, scale: Floats) -> tuple[npt.NDArray[np.bool_], Ints, Ints]:
+    """Which points are kept, where all would lie on the grid, and their weights in steps."""
+    points, weight = lines.points * scale, lines.weight * _WRITTEN.weight
+    places = np.floor(points + 0.5)
+    if not len(points) or (np.abs(points - places) < 1e-6).all():
+        return np.ones(len(points), bool), places.astype(np.int64), np.floor(weight + 0.5).astype(np.int64)
+    count = np.diff(lines.first)
+    paths = np.repeat(count > 1, count)
+    first = np.concatenate([[0], np.cumsum(count[count > 1])])
+    kept = np.ones(len(points), bool)
+    if paths.any():
+        kept[paths], at, weight[paths] = curves.fewest(points[paths], first, weight[paths], _NEAR, _NEAR)
+        places[paths] = np.floor(at + 0.5)
+    places = np.clip(places, 0, np.floor(scale * (lines.width, lines.height) + 0.5))
+    for begin, end in pairwise(lines.first.tolist()):
+        _still_closed(points[begin:end], kept[begin:end])
+    return kept, places.astype(np.int64), np.floor(weight + 0.5).astype(np.int64)
 
-    So often that once more would change nothing: what is read is written as the same bytes.
-    """
-    while True:
-        keep = [False] * len(points)
-        keep[0] = keep[-1] = True
-        spans = [(0, len(points) - 1)]
-        while spans:
-            first, last = spans.pop()
-            (ax, ay), wa = points[first], weights[first]
-            dx, dy, dw = points[last][0] - ax, points[last][1] - ay, weights[last] - wa
-            square = dx * dx + dy * dy
-            worst, at = 0, 0
-            for k in range(first + 1, last):
-                px, py = points[k][0] - ax, points[k][1] - ay
-                along = px * dx + py * dy
-                if 0 <= along <= square and square:
-                    off = (px * dy - py * dx) ** 2  # of the square of a step, times that of the length
-                    pressed = abs(wa * square + dw * along - weights[k] * square)
-                    wrong = max(off if off > square else 0, pressed * square if pressed > square else 0)
-                else:
-                    wrong = (px * px + py * py) * max(1, square)
-                if wrong > worst:
-                    worst, at = wrong, k
-            if worst:
-                keep[at] = True
-                spans += [(first, at), (at, last)]
-        if all(keep):
-            return points, weights
-        points = [point for point, stays in zip(points, keep) if stays]
-        weights = [weight for weight, stays in zip(weights, keep) if stays]
+
+def _still_closed(points: Floats, kept: npt.NDArray[np.bool_]) -> None:
+    """Keep more points of a line, in place, where with fewer it would close that is open, or open that is closed."""
+    if _closes(points):
+        wanted = np.rint(np.linspace(0, len(points) - 1, _LEAST_RING)).astype(np.int64)
+        if kept.sum() < _LEAST_RING:
+            kept[wanted] = True
+        return
+    while _closes(points[kept]):
+        here = np.flatnonzero(kept)
+        longest = int(np.argmax(curves.lengths(points[here]) * (np.diff(here) > 1)))
+        middle = (here[longest] + here[longest + 1]) // 2
+        if kept[middle]:
+            return
+        kept[middle] = True
+
+
+def _closes(points: Floats) -> bool:
+    """Whether a line is drawn as a ring, as `lines.strokes` has it."""
+    gap = points[0] - points[-1]
+    if len(points) < _LEAST_RING:
+        return False
+    return math.sqrt(float(gap[0] * gap[0] + gap[1] * gap[1])) < float(curves.lengths(points).max()) / 3
 
 
 def _code_path_2(coder: Coder, path: list[list[int]], columns: int, rows: int) -> None:

@@ -44,7 +44,7 @@ MAX_SIZE = 144_000.0  # points
 MAX_PEN = 72.0
 MAX_STRAY = 144.0  # of lines, points
 COMPACT = b"PI"  # how all compact members begin
-LEVELS = 24  # of grey, unless a layer says another number: what ink shows of more is nothing
+LEVELS = 16  # of grey, unless a layer says another number: what ink shows of more is nothing
 
 _SHIPPED = re.compile(r"[a-z0-9_-]{1,60}", re.ASCII)
 
@@ -181,7 +181,7 @@ def _length(item: dict[str, Any], name: str, most: float, place: str = "") -> fl
 
 def _samples(data: bytes, max_pixels: int, edges: EdgeList | None) -> tuple[GreyImage, bool]:
     """Samples, and whether they come in the compact form, which has as many levels as they are kept at."""
-    if data.startswith((compact.SAMPLES, compact.SAMPLES_BESIDE)):
+    if data.startswith(compact.ALL_SAMPLES):
         return compact.samples_from(data, max_pixels, edges), True
     return pgm.read(io.BytesIO(data), "", max_pixels), False
 
@@ -203,7 +203,7 @@ def _directions(data: bytes, samples: GreyImage, max_pixels: int) -> Directions:
 
 
 def _lines(data: bytes) -> Lines:
-    if data.startswith((compact_lines.LINES, compact_lines.LINES_1)):
+    if data.startswith(compact_lines.ALL_LINES):
         return compact_lines.lines_from(data)
     return lines_format.read(io.BytesIO(data), "")
 

@@ -113,7 +113,7 @@ def kind(start: bytes) -> tuple[str, str] | None:
     if found := _NETPBM.match(start):
         name = _NETPBM_NAMES[found[1]]
         return ("pgm", _NAMES["pgm"]) if name == "PGM" else ("photo", f"a {name} photograph")
-    if start.startswith((b"PK\x03\x04", b"PIs1", b"PIe1", b"PId1", b"PIl1", b"PIt1")):
+    if start.startswith((b"PK\x03\x04", b"PIs", b"PIe", b"PId", b"PIl", b"PIt")):
         return "illustration", "a packed illustration" if start.startswith(b"PK") else "a part of a packed illustration"
     if start.startswith((b"%!PS", b"%PDF-")):
         return "page", "PostScript" if start.startswith(b"%!") else "PDF"

@@ -97,7 +97,10 @@ def _on_one_sheet(
             told = lined(layer.lines, width_pt, height_pt, layer.line, device_dpi)
             drawn = Strokes.joined([drawn, told]) if len(drawn) else told
         outlines.append(drawn)
-    greys = [enlarged(layer.samples, layer.edges, size, threads) for layer in illustration.layers]
+    greys = [  # a device does not ease
+        enlarged(layer.samples, layer.edges, size, threads, ease=layer.rule != "threshold")
+        for layer in illustration.layers
+    ]
     best: tuple[int, list[Strokes]] | None = None
     extra: Floats | None = None
     left = _steps(illustration)

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from penink_cli.geometry.curves import lengths
 from penink_cli.ground.model import Floats, Ints, LineChoice, Lines
 
 #: The cells of the map that says how full each place is, and the σ of the Gaussian it is blurred by, points.
@@ -83,9 +84,3 @@ class _Room:
         for (x, y), ink in zip(at[starts].tolist(), np.add.reduceat(inked, starts).tolist()):
             self.map[y : y + 2 * r + 1, x : x + 2 * r + 1] += self.kernel * ink
         return True
-
-
-def lengths(points: Floats) -> Floats:
-    """Of each leg of a path (k, 2)."""
-    steps = points[1:] - points[:-1]
-    return np.asarray(np.sqrt(steps[:, 0] * steps[:, 0] + steps[:, 1] * steps[:, 1]))

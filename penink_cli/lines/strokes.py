@@ -6,9 +6,11 @@ import math
 
 import numpy as np
 
+from penink_cli.geometry import curves
+from penink_cli.geometry.curves import lengths
 from penink_cli.ground import pens
 from penink_cli.ground.model import Floats, LineChoice, Lines, Strokes
-from penink_cli.lines.choice import chosen, lengths
+from penink_cli.lines.choice import chosen
 
 #: The distance of knots, and the σ, about, over which lines are smoothed, points.
 KNOT_PT, SMOOTH_PT = 3.0, 0.6
@@ -22,9 +24,7 @@ RULED_PT, STRAIGHT_PT, BEYOND = 1.2, 9.0, 0.25
 STRAYS_PT, SECOND, APART = 16.0, 0.7, 4.0
 
 
-def line_strokes(
-    lines: Lines, width_pt: float, height_pt: float, choice: LineChoice, white: bool = False
-) -> Strokes:
+def line_strokes(lines: Lines, width_pt: float, height_pt: float, choice: LineChoice, white: bool = False) -> Strokes:
     """Strokes along the dark lines, or the white ones, the most telling first, on a sheet of width_pt × height_pt.
 
     A small print, whose pens are finer, has room for the lines of one that is as much larger.
@@ -37,7 +37,7 @@ def line_strokes(
         points, weight = lines[i] * scale, lines.weight[lines.first[i] : lines.first[i + 1]]
         if lines.breadth[i] > 0:
             breadth = float(lines.breadth[i]) * math.sqrt(float(scale[0] * scale[1]))
-            chains.append(points if len(points) == 1 else _curve(points, False))
+            chains.append(points if len(points) == 1 else curves.through(points, False))
             widths.append(choice.pen_pt if choice.even else max(breadth, FINEST * choice.pen_pt))
             continue
         knots, pressed, ring = _knots(points, weight)
@@ -51,7 +51,7 @@ def line_strokes(
         for k, line in enumerate(strays):
             pen = choice.pen_pt if not k else SECOND * choice.pen_pt
             closed = ring and len(strays) == 1
-            chains.append(_curve(line, closed))
+            chains.append(curves.through(line, closed))
             widths.append(pen if choice.even else _widths(line, pressed, closed, pen))
     return Strokes.of(width_pt, height_pt, chains, widths)
 
@@ -126,7 +126,7 @@ def _knots(points: Floats, weight: Floats) -> tuple[Floats, Floats, bool]:
 
 def _dense(points: Floats, weight: Floats, ring: bool) -> tuple[Floats, Floats]:
     """The curve through points (k, 2), as points no further apart than half of KNOT_PT, and their weights."""
-    control = _curve(points, ring)
+    control = curves.through(points, ring)
     n = np.maximum(np.ceil(lengths(points) / (KNOT_PT / 2)), 1).astype(np.int64)
     leg = np.repeat(np.arange(len(n)), n)
     t = (np.arange(len(leg)) - np.repeat(np.cumsum(n) - n, n)) / n[leg]
@@ -135,25 +135,6 @@ def _dense(points: Floats, weight: Floats, ring: bool) -> tuple[Floats, Floats]:
     dense = s * s * s * a + 3 * s * s * u * b + 3 * s * u * u * c + u * u * u * d
     weights = weight[leg] * (1 - t) + weight[leg + 1] * t
     return np.concatenate([dense, points[-1:]]), np.append(weights, weight[-1])
-
-
-def _curve(knots: Floats, ring: bool) -> Floats:
-    """Control points of a curve through the knots, each tangent that of the parabola through its neighbours."""
-    if len(knots) == 2:
-        step = (knots[1] - knots[0]) / 3
-        return np.stack([knots[0], knots[0] + step, knots[1] - step, knots[1]])
-    steps = knots[1:] - knots[:-1]
-    size = np.maximum(lengths(knots), 1e-9)[:, None]
-    slope = steps / size
-    if ring:
-        around, sizes = np.concatenate([slope[-1:], slope]), np.concatenate([size[-1:], size])
-        inner = (around[:-1] * sizes[1:] + around[1:] * sizes[:-1]) / (sizes[1:] + sizes[:-1])
-        tangent = np.concatenate([inner, inner[:1]])
-    else:
-        inner = (slope[:-1] * size[1:] + slope[1:] * size[:-1]) / (size[1:] + size[:-1])
-        tangent = np.concatenate([2 * slope[:1] - inner[:1], inner, 2 * slope[-1:] - inner[-1:]])
-    leaving, arriving = knots[:-1] + tangent[:-1] * size / 3, knots[1:] - tangent[1:] * size / 3
-    return np.concatenate([knots[:1], np.stack([leaving, arriving, knots[1:]], axis=1).reshape(-1, 2)])
 
 
 def _widths(knots: Floats, weight: Floats, ring: bool, pen_pt: float) -> Floats:

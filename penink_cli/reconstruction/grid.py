@@ -34,7 +34,7 @@ from penink_cli.reconstruction.shrinking import shrunk
 Grey32 = npt.NDArray[np.float32]
 
 MAX_ERROR = 8 / 255
-MAX_SEEN_ERROR = 3.5 / 255  # of what a drawing at a size shows
+MAX_SEEN_ERROR = 4 / 255  # of what a drawing at a size shows
 SEEN_PT = 1.0  # σ of the blur: hatching shows nothing finer
 # Smaller regions are specks that no stroke can show: 4 x 4 pixels of 512 x 512, however finely the photo is resolved.
 LEAST_REGION, LEAST_REGION_PX = 1 / 16384, 16  # of the picture, and at least so many pixels

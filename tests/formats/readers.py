@@ -100,9 +100,9 @@ def _compact(data: bytes) -> Any:
     from tests.fuzz.seeds import EDGES
 
     try:
-        if data.startswith((compact.SAMPLES, compact.SAMPLES_BESIDE)):
+        if data.startswith(compact.ALL_SAMPLES):
             return compact.samples_from(data, MAX_PIXELS, EDGES)
-        if data.startswith((compact_lines.LINES, compact_lines.LINES_1)):
+        if data.startswith(compact_lines.ALL_LINES):
             return compact_lines.lines_from(data)
         if data.startswith((compact_edges.EDGES, compact_edges.EDGES_1)):
             return compact_edges.edges_from(data)

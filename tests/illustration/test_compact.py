@@ -38,14 +38,16 @@ def by_formula() -> dict[str, tuple[bytes, object]]:
     samples = GreyImage(((7 * x * x + 13 * y + x * y) % 64).astype(np.uint8), 63)
     text = b'{"name": "vectors", "numbers": [1, 2, 3]}'
     return {
-        "PIs1": (compact.samples_bytes(samples), samples),
-        "PIs2": (compact.samples_bytes(samples, EDGES), samples),
+        "PIs1": (b"", samples),
+        "PIs2": (b"", samples),
+        "PIs3": (compact.samples_bytes(samples, EDGES), samples),
         "PIe1": (b"", EDGES),
         "PIe2": (compact_edges.edges_bytes(EDGES, 256, 192), LEVELLED),
         "PId1": (b"", whirl(12, 8)),
         "PId2": (compact.directions_bytes(whirl(12, 8)), whirl(12, 8)),
         "PIl1": (b"", TOLD),
-        "PIl2": (compact_lines.lines_bytes(TOLD), TOLD),
+        "PIl2": (b"", TOLD),
+        "PIl3": (compact_lines.lines_bytes(TOLD), TOLD),
         "PIt1": (compact.text_bytes(text), text),
     }
 
@@ -68,10 +70,11 @@ def test_every_version_is_read(name):
         back = compact.directions_from(data)
         assert (back.cos2 * given.cos2 + back.sin2 * given.sin2).min() > np.cos(np.radians(5.625)) - 1e-9
     elif isinstance(given, Lines):
-        back = compact_lines.lines_from(data)
-        assert np.abs(back.points - given.points).max() <= 0.04 and np.abs(back.weight - given.weight).max() <= 1 / 6
-        assert np.abs(back.rank - given.rank).max() <= 1 / 8 and np.array_equal(back.white, given.white)
-        assert np.abs(back.breadth - given.breadth).max() <= 0.02
+        back, smoothed = compact_lines.lines_from(data), name == "PIl3"
+        assert np.abs(back.points - given.points).max() <= (0.11 if smoothed else 0.04)
+        assert np.abs(back.weight - given.weight).max() <= (0.42 if smoothed else 1 / 6)
+        assert np.abs(back.rank / given.rank - 1).max() <= 0.1 and np.array_equal(back.white, given.white)
+        assert np.abs(back.breadth - given.breadth).max() <= 0.05
     else:
         assert compact.text_from(data) == given
 
@@ -244,6 +247,10 @@ def test_text_comes_back():
 
 PACKED = {
     "samples": (compact.samples_bytes(grey()), lambda data: compact.samples_from(data, 2000)),
+    "samples of 256 levels": (
+        compact.samples_bytes(GreyImage(255 - 3 * grey().values, 255)),
+        lambda data: compact.samples_from(data, 2000),
+    ),
     "samples beside edges": (
         compact.samples_bytes(grey(), square()),
         lambda data: compact.samples_from(data, 2000, square()),

@@ -12,6 +12,7 @@ import skimage.data
 
 from penink_cli.formats import compact_lines, pgm, strokes
 from penink_cli.formats import lines as lines_format
+from penink_cli.geometry import curves
 from penink_cli.ground.errors import FormatError, LimitError
 from penink_cli.ground.model import GreyImage, Lines
 from penink_cli.lines.detection import detect_lines
@@ -30,7 +31,7 @@ def test_lines_come_back_near_and_then_exactly(face):
     assert (back.width, back.height) == (512, 512) and len(back) <= len(face)
     assert (np.diff(back.rank) <= 0).all()
     for i in range(20):
-        assert back.rank[i] == pytest.approx(face.rank[i], abs=1 / 8 + 1e-9) and back.white[i] == face.white[i]
+        assert face.rank[i] - 1e-4 <= back.rank[i] <= 1.1 * face.rank[i] and back.white[i] == face.white[i]
         assert np.abs(back[i][0] - face[i][0]).max() < 0.45
     assert back.breadth.sum() == pytest.approx(face.breadth.sum(), rel=0.05)
     assert len(packed) < 4500
@@ -51,7 +52,7 @@ def test_no_lines_and_a_single_spot():
 def test_what_is_cut_short_is_refused(cut, face):
     packed = compact_lines.lines_bytes(face)
     with pytest.raises(FormatError):
-        compact_lines.lines_from(packed[:cut] if cut else b"PIl2")
+        compact_lines.lines_from(packed[:cut] if cut else b"PIl3")
 
 
 def test_damage_is_refused_or_sound(face):
@@ -124,3 +125,41 @@ def test_a_wrong_choice_is_named(penink, tmp_path, line, complaint):
     manifest(tmp_path, line=line)
     done = penink("render", tmp_path / "i.illustration.json")
     assert done.returncode == 1 and f"layer 0: {complaint}" in done.stderr.decode()
+
+
+def test_a_curve_is_kept_by_few_points_and_stays_near_what_was_given():
+    """A wavy line of 400 points with noise of a quarter of a step, and a circle that must stay closed."""
+    rng = np.random.default_rng(3)
+    t = np.linspace(0, 1, 400)
+    wave = np.column_stack([20 + 460 * t, 200 + 40 * np.sin(9 * t)])
+    turn = 2 * np.pi * np.arange(121) / 120
+    circle = np.column_stack([300 + 60 * np.cos(turn), 400 + 60 * np.sin(turn)])
+    points = np.concatenate([wave, circle])
+    noisy = points + rng.normal(0, 0.2, points.shape)
+    noisy[-1] = noisy[400]
+    weight = np.full(len(points), 0.7)
+    given = Lines(
+        512, 512, noisy, np.array([0, 400, 521]), weight, np.array([3.0, 2.0]), np.zeros(2, bool), np.zeros(2)
+    )
+    back = compact_lines.lines_from(compact_lines.lines_bytes(given))
+    assert len(back.points) < 40
+    for i, exact in enumerate((wave, circle)):
+        control = curves.through(back[i], i == 1)
+        u = np.linspace(0, 1, 40)[:, None]
+        dense = np.concatenate([
+            (1 - u) ** 3 * a + 3 * u * (1 - u) ** 2 * b + 3 * u * u * (1 - u) * c + u**3 * d
+            for a, b, c, d in zip(control[:-3:3], control[1:-2:3], control[2:-1:3], control[3::3])
+        ])  # fmt: skip
+        away = np.sqrt(((exact[:, None] - dense[None]) ** 2).sum(axis=2)).min(axis=1)
+        assert away.max() < 1.5 * 512 / 640 and away.mean() < 0.6 * 512 / 640
+    assert np.array_equal(back[1][0], back[1][-1]) and len(back[1]) >= 6
+    assert back.weight == pytest.approx(np.full(len(back.weight), 2 / 3))
+
+
+def test_a_bow_that_nearly_closes_stays_open():
+    turn = np.radians(np.linspace(8, 352, 90))
+    bow = np.column_stack([100 + 50 * np.cos(turn), 100 + 50 * np.sin(turn)])
+    given = Lines(200, 200, bow, np.array([0, 90]), np.ones(90), np.ones(1), np.zeros(1, bool), np.zeros(1))
+    back = compact_lines.lines_from(compact_lines.lines_bytes(given))
+    gap = np.sqrt(((back[0][0] - back[0][-1]) ** 2).sum())
+    assert 12 < gap < 16 and (len(back[0]) < 6 or gap > curves.lengths(back[0]).max() / 3)

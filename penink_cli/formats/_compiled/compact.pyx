@@ -14,6 +14,8 @@ One `Coder` both writes and reads. Each method takes the value to write and retu
 takes anything and returns the value read, so that writer and reader cannot disagree on the model.
 """
 
+from libc.math cimport floor, sqrt
+
 import numpy as np
 
 INPUTS = 6  # contexts mixed for each binary decision
@@ -23,6 +25,22 @@ SLOPE = 20  # mixing weights learn at this rate
 LIMIT = 90  # an estimate moves by at least 1 / (LIMIT + 1.6) of its error
 END = 0b01010101
 OVERRUN = 4  # bytes that may be read beyond the end: zeros that `finish` leaves out
+
+FITTED_SAMPLES = 1 << 20  # of an image that is fitted: each takes up to 3 µs
+FITTED_LEVELS = 64
+cdef enum:
+    REACH = 6  # samples, of the window that weights are fitted in
+    TAKEN = 6  # neighbours whose differences are weighed
+    TOLD = 4  # contexts beside the probabilities that are told
+    SCALES = 64  # classes of how wrong guesses are
+    FIRST = 9830  # 0.15: the mixing weight of a context at first
+    FIRST_TOLD = 19661  # 0.3: and of a probability
+    TOLD_SLOPE = 60
+cdef double STIFF = 4.0  # holds weights to those of the plain guess
+cdef double SPREAD = 1.08  # of the distribution, in mean errors
+cdef double[13] _FADES  # what a sample so many steps away counts for
+for _k in range(13):
+    _FADES[_k] = round(0.8**_k, 9)
 
 _KNEES = (
     1, 2, 3, 6, 10, 16, 27, 45, 73, 120, 194, 310, 488, 747, 1101, 1546, 2047,
@@ -46,6 +64,31 @@ def _stretch_table(squash: np.ndarray) -> np.ndarray:
 _SQUASH = _squash_table()
 _STRETCH = _stretch_table(_SQUASH)
 _RATE = (65536 * 10 // (np.arange(256) * 10 + 16)).astype(np.int32)
+
+
+cdef inline double _below(double x, double middle, double spread) noexcept nogil:
+    """The part of a Student's distribution with four degrees of freedom that lies below x."""
+    cdef double t = (x - middle) / spread
+    t = t / sqrt(1 + t * t / 4)
+    return 0.5 + 0.375 * t * (1 - t * t / 12)
+
+
+cdef inline double _between(int low, int high, double middle, double spread) noexcept nogil:
+    """The part that falls to whole numbers from low to high."""
+    return max(1e-6, _below(high + 0.5, middle, spread) - _below(low - 0.5, middle, spread))
+
+
+cdef inline double _share(int a, int b, int c, int d, double middle, double spread) noexcept nogil:
+    """What falls to a … b of what falls to that and to c … d."""
+    cdef double one = _between(a, b, middle, spread)
+    return one / (one + _between(c, d, middle, spread))
+
+
+cdef inline double _stops(int guess, int off, int most, bint below, double middle, double spread) noexcept nogil:
+    """How likely a number that is at least so far off on that side is just that."""
+    if below:
+        return _between(guess - off, guess - off, middle, spread) / _between(0, guess - off, middle, spread)
+    return _between(guess + off, guess + off, middle, spread) / _between(guess + off, guess + most, middle, spread)
 
 
 cdef class Coder:
@@ -322,6 +365,225 @@ cdef class Coder:
                 errors[i & 1, j + 1] = abs(values[i, j] - guess)
             errors[i & 1, 0] = errors[i & 1, 1]
             errors[i & 1, w + 1] = errors[i & 1, w]
+
+    def fitted(self, int[:, ::1] values, int maxval, unsigned char[:, ::1] cuts) -> None:
+        """Samples of few levels, row by row, by what fitted the samples around each.
+
+        The neighbours of a sample are weighed as would have served those within REACH of it best, by least squares; how
+        wrong that was nearby says how far the next is likely to be from it, and so how likely each level is (Student's
+        distribution with four degrees of freedom, which has a closed form). Two such guesses and four contexts are
+        mixed. All of it is sums, products, quotients and square roots of doubles in a fixed order.
+
+        values: (h, w), at most FITTED_SAMPLES of them, written from or read into. maxval: below FITTED_LEVELS.
+        cuts: as of `samples`. Reading stops where the bytes overrun.
+        """
+        cdef Py_ssize_t i, j, here
+        cdef int k, hidden, count, around, weight, north, west, north_west, north_east, north_north, west_west
+        cdef int median, rough, before, level, guess, value, off, most
+        cdef bint below
+        cdef double middle, plain, fit, energy, seen, one, other
+        cdef Py_ssize_t h = values.shape[0]
+        cdef Py_ssize_t w = values.shape[1]
+        cdef Py_ssize_t rows = min(h, REACH + 1)
+        cdef double[:, :, ::1] around_all = np.zeros((rows, w, TAKEN + 1))  # what was known of each, what it was
+        cdef double[:, ::1] wrong = np.zeros((rows, w + 4))  # two columns of margin
+        cdef int[:, ::1] errors = np.zeros((2, w + 2), np.int32)
+        cdef double[:, ::1] matrix = np.zeros((TAKEN, TAKEN + 1))
+        cdef double[:, ::1] scales = np.empty((2, SCALES))
+        cdef double[::1] counts = np.full(SCALES, 2.0)
+        for k in range(SCALES):
+            scales[0, k] = scales[1, k] = 2 * (0.4 + 0.12 * k)
+        for k in range(4 * NODES):
+            for here in range(INPUTS):
+                self._weights[k, here] = FIRST_TOLD if here >= TOLD else FIRST
+        for i in range(h):
+            here = i % rows
+            for j in range(w):
+                if self._exhausted():
+                    return
+                west = values[i, j - 1] if j else (values[i - 1, j] if i else maxval)
+                north = values[i - 1, j] if i else west
+                north_west = values[i - 1, j - 1] if i and j else north
+                north_east = values[i - 1, j + 1] if i and j + 1 < w else north
+                north_north = values[i - 2, j] if i > 1 else north
+                west_west = values[i, j - 2] if j > 1 else west
+                hidden = cuts[i, j]
+                count = 0
+                if i == 0 and hidden & 1:
+                    hidden |= 2 | 4 | 8 | 32
+                elif j == 0 and hidden & 2:
+                    hidden |= 1 | 4 | 16
+                if hidden:
+                    around = weight = 0
+                    if not hidden & 1:
+                        around += 6 * west
+                        weight += 6
+                    if not hidden & 2:
+                        around += 6 * north
+                        weight += 6
+                    if not hidden & 4:
+                        around += 2 * north_west
+                        weight += 2
+                    if not hidden & 8:
+                        around += 3 * north_east
+                        weight += 3
+                    if weight:
+                        around = (2 * around + weight) // (2 * weight)
+                        west = around if hidden & 1 else west
+                        north = around if hidden & 2 else north
+                        north_west = around if hidden & 4 else north_west
+                        north_east = around if hidden & 8 else north_east
+                        west_west = around if hidden & 16 else west_west
+                        north_north = around if hidden & 32 else north_north
+                    count = 3 if weight == 0 else 2 if hidden & 3 == 3 else 1
+                if north_west >= max(west, north):
+                    median = min(west, north)
+                elif north_west <= min(west, north):
+                    median = max(west, north)
+                else:
+                    median = west + north - north_west
+                around = 6 * (west + north) + 2 * (north_east - north_west)
+                around += 2 * (west - west_west) + 2 * (north - north_north) + 4 * median
+                plain = around / 16.0
+                middle = (west + north) / 2.0
+                around_all[here, j, 0] = west - middle
+                around_all[here, j, 1] = north_west - middle
+                around_all[here, j, 2] = north_east - middle
+                around_all[here, j, 3] = west_west - middle
+                around_all[here, j, 4] = north_north - middle
+                around_all[here, j, 5] = median - middle
+                rough = abs(west - north_west) + abs(north - north_west) + abs(north - north_east)
+                rough += abs(west - west_west) + abs(north - north_north)
+                fit = plain
+                if rough or median != west:  # else whatever they weigh, they say the same
+                    fit += self._correction(around_all, i, j, rows, matrix)
+                plain = min(max(plain, 0.0), <double>maxval)
+                fit = min(max(fit, 0.0), <double>maxval)
+                energy = wrong[here, j + 1] + 0.4 * wrong[here, j]
+                seen = (1.0 if j else 0.0) + (0.4 if j > 1 else 0.0)
+                if i:
+                    k = <int>((i - 1) % rows)
+                    energy += wrong[k, j + 2] + 0.6 * wrong[k, j + 1] + 0.7 * wrong[k, j + 3] + 0.3 * wrong[k, j + 4]
+                    energy += 0.3 * wrong[k, j]
+                    seen += 1.0 + (0.6 if j else 0.0) + (0.7 if j + 1 < w else 0.0) + (0.3 if j + 2 < w else 0.0)
+                    seen += 0.3 if j > 1 else 0.0
+                if i > 1:
+                    energy += 0.4 * wrong[(i - 2) % rows, j + 2]
+                    seen += 0.4
+                energy = energy / seen if seen > 0 else 1.5
+                level = min(SCALES - 1, <int>(6 * sqrt(energy + 0.12 * rough)))
+                one = max(0.06, SPREAD * scales[0, level] / counts[level])
+                other = max(0.06, SPREAD * scales[1, level] / counts[level])
+                guess = <int>floor(fit + 0.5)
+                before = errors[(i + 1) & 1, j + 1] + errors[i & 1, j] + errors[(i + 1) & 1, j + 2]
+                self._context[0] = self._magnitude(rough) * 12 + self._magnitude(before) + 144 * count
+                self._context[1] = guess * 12 + self._magnitude(before)
+                self._context[2] = self._sign(west - guess, 0) * 125 + self._sign(north - guess, 0) * 25
+                self._context[2] += self._sign(north_north - guess, 0) * 5 + self._sign(west_west - guess, 0)
+                self._context[3] = 64 * (1 if guess == 0 else 2 if guess == maxval else 0)
+                self._context[3] += (west == guess) + 2 * (north == guess) + 4 * (north_west == guess)
+                self._context[3] += 8 * (north_east == guess) + 16 * (west_west == guess) + 32 * (north_north == guess)
+                k = 0 if level < 8 else 1 if level < 14 else 2 if level < 20 else 3
+                off = values[i, j] - guess
+                value = guess
+                if not self._told(
+                    0, k, off == 0,
+                    _between(guess, guess, fit, one) / _between(0, maxval, fit, one),
+                    _between(guess, guess, plain, other) / _between(0, maxval, plain, other),
+                ):
+                    below = guess > 0
+                    if below and guess < maxval:
+                        below = self._told(
+                            1, k, off < 0,
+                            _share(0, guess - 1, guess + 1, maxval, fit, one),
+                            _share(0, guess - 1, guess + 1, maxval, plain, other),
+                        )
+                    most = guess if below else maxval - guess
+                    off = abs(off)
+                    value = 1
+                    while value < most and not self._told(
+                        1 + min(value, 40), k, off == value,
+                        _stops(guess, value, most, below, fit, one), _stops(guess, value, most, below, plain, other),
+                    ):
+                        value += 1
+                    value = guess - value if below else guess + value
+                values[i, j] = value
+                around_all[here, j, TAKEN] = value - (around / 16.0)
+                wrong[here, j + 2] = abs(value - fit)
+                scales[0, level] += abs(value - fit)
+                scales[1, level] += abs(value - plain)
+                counts[level] += 1
+                errors[i & 1, j + 1] = abs(value - guess)
+            errors[i & 1, 0] = errors[i & 1, 1]
+            errors[i & 1, w + 1] = errors[i & 1, w]
+
+    cdef double _correction(
+        self, double[:, :, ::1] around, Py_ssize_t i, Py_ssize_t j, Py_ssize_t rows, double[:, ::1] matrix
+    ):
+        """What the weights that served the samples within REACH best add to the plain guess of the sample at i, j."""
+        cdef Py_ssize_t up, column, first, last, row
+        cdef int a, b, c
+        cdef double part, found
+        cdef double *known
+        for a in range(TAKEN):
+            for b in range(a, TAKEN + 1):
+                matrix[a, b] = STIFF if a == b else 0.0
+        for up in range(min(i, REACH) + 1):
+            row = (i - up) % rows
+            first = max(0, j - REACH)
+            last = min(around.shape[1] - 1, j + REACH) if up else j - 1
+            for column in range(first, last + 1):
+                known = &around[row, column, 0]
+                part = _FADES[up + abs(column - j)]
+                for a in range(TAKEN):
+                    found = part * known[a]
+                    for b in range(a, TAKEN + 1):
+                        matrix[a, b] += found * known[b]
+        for a in range(TAKEN):
+            for b in range(a + 1, TAKEN):
+                matrix[b, a] = matrix[a, b]
+        for a in range(TAKEN):
+            for b in range(a + 1, TAKEN):
+                part = matrix[b, a] / matrix[a, a]
+                for c in range(a, TAKEN + 1):
+                    matrix[b, c] -= part * matrix[a, c]
+        known = &around[i % rows, j, 0]
+        found = 0.0
+        for a in range(TAKEN - 1, -1, -1):
+            for b in range(a + 1, TAKEN):
+                matrix[a, TAKEN] -= matrix[a, b] * matrix[b, TAKEN]
+            matrix[a, TAKEN] /= matrix[a, a]
+            found += matrix[a, TAKEN] * known[a]
+        return found
+
+    cdef int _told(self, int node, int mixer, int bit, double one, double other):
+        """One decision, mixed from the estimates of TOLD contexts and two probabilities that it is 1."""
+        cdef int k, index, p, error
+        cdef long long step, dot = 0
+        cdef int row = mixer * NODES + node
+        for k in range(TOLD):
+            index = (self._context[k] * NODES + node) & (TABLE - 1)
+            self._index[k] = index
+            self._input[k] = self._stretch[self._p[k, index] >> 4]
+        self._input[TOLD] = self._stretch[max(4, min(4091, <int>(4096 * one)))]
+        self._input[TOLD + 1] = self._stretch[max(4, min(4091, <int>(4096 * other)))]
+        for k in range(INPUTS):
+            dot += <long long>self._weights[row, k] * self._input[k]
+        dot >>= 16
+        dot = max(-2047, min(2047, dot))
+        p = self._squash[dot + 2047]
+        bit = self._code_bit(bit, p)
+        error = ((bit << 12) - p) * TOLD_SLOPE
+        for k in range(INPUTS):
+            self._weights[row, k] += (self._input[k] * error + 0x8000) >> 16
+        for k in range(TOLD):
+            index = self._index[k]
+            p = self._p[k, index]
+            step = (65535 if bit else 0) - p
+            self._p[k, index] = p + <int>((step * self._rate[self._n[k, index]]) >> 16)
+            if self._n[k, index] < LIMIT:
+                self._n[k, index] += 1
+        return bit
 
     cdef inline int _magnitude(self, int value):
         """0 … 11, finer for small numbers."""
