@@ -12,10 +12,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from penink_cli.geometry.walls import DOWN, RIGHT, regions
+from penink_cli.geometry.walls import walls as walls_of
 from penink_cli.ground.model import EdgeList, GreyImage
 from penink_cli.reconstruction._compiled import easing as _easing
-from penink_cli.reconstruction._compiled import walls as _walls
-from penink_cli.reconstruction.extraction import segments
 
 FEW = 64  # levels; finer steps show nowhere
 PARTS = 256  # of a level, that eased samples are rounded to
@@ -33,18 +33,17 @@ def eased(samples: GreyImage, edges: EdgeList | None) -> GreyImage:
         return samples
     walls = np.zeros((h, w), np.uint8)
     if edges is not None and len(edges.edges):
-        _walls.block(*segments(edges, w, h), walls)
+        walls = walls_of(edges, w, h)
     across, down = np.diff(values, axis=1), np.diff(values, axis=0)
     linked = np.zeros((h, w), np.uint8)
-    linked[:, :-1] |= ((walls[:, :-1] & _walls.RIGHT == 0) & (np.abs(across) <= 1)).astype(np.uint8)
-    linked[:-1] |= 2 * ((walls[:-1] & _walls.DOWN == 0) & (np.abs(down) <= 1)).astype(np.uint8)
+    linked[:, :-1] |= ((walls[:, :-1] & RIGHT == 0) & (np.abs(across) <= 1)).astype(np.uint8)
+    linked[:-1] |= 2 * ((walls[:-1] & DOWN == 0) & (np.abs(down) <= 1)).astype(np.uint8)
     east, south = linked[:, :-1] & 1 > 0, linked[:-1] & 2 > 0
 
     parted = walls.copy()
-    parted[:, :-1] |= np.where(across, _walls.RIGHT, 0).astype(np.uint8)
-    parted[:-1] |= np.where(down, _walls.DOWN, 0).astype(np.uint8)
-    parent = np.zeros(h * w, np.int32)
-    _walls.regions(parted, parent)
+    parted[:, :-1] |= np.where(across, RIGHT, 0).astype(np.uint8)
+    parted[:-1] |= np.where(down, DOWN, 0).astype(np.uint8)
+    parent = regions(parted)
     plateau = parent.reshape(h, w)
     lighter, darker = np.zeros(h * w, bool), np.zeros(h * w, bool)
     for step, link, one, other in (
@@ -57,8 +56,8 @@ def eased(samples: GreyImage, edges: EdgeList | None) -> GreyImage:
     small = np.bincount(parent, minlength=h * w) < PLATEAU
     detail = np.zeros(h * w, bool)
     for open_way, one, other in (
-        (walls[:, :-1] & _walls.RIGHT == 0, plateau[:, :-1], plateau[:, 1:]),
-        (walls[:-1] & _walls.DOWN == 0, plateau[:-1], plateau[1:]),
+        (walls[:, :-1] & RIGHT == 0, plateau[:, :-1], plateau[:, 1:]),
+        (walls[:-1] & DOWN == 0, plateau[:-1], plateau[1:]),
     ):
         crowd = open_way & (one != other) & small[one] & small[other]
         detail[one[crowd]] = detail[other[crowd]] = True

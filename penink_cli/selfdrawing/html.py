@@ -21,13 +21,18 @@ SOURCES = (
     "unpack.js", "constants.js", "reconstruct.js", "drawing.js", "outline.js", "telling.js", "phase.js", "follow.js",
     "engrave.js", "data.js", "raster.js", "page.js",
 )  # fmt: skip
+#: What stands in for sources that are not needed, where others call them all the same.
+INSTEAD = {
+    "telling.js": "const tellingOf = () => [], tellingOn = () => [];",
+    "outline.js": "const outlinesOf = () => [];",
+}
 
 
 def write(illustration: Illustration, title: str, readable: bool = False, reload: bool = False) -> bytes:
     """The page. readable: with the program's comments, not packed. reload: it follows its file."""
     parts = layers(illustration)
     data = b"".join(map(_bytes, parts))
-    program = "\n".join(packer.source(name) for name in SOURCES)
+    program = _program(parts)
     call = f"start({plain(illustration.width, 4)},{plain(illustration.height, 4)},{_layers(parts)},"
     if readable:
         script = f"{program}\nunpack({_quoted(data)}).then(bytes => {call}bytes));"
@@ -48,6 +53,16 @@ def write(illustration: Illustration, title: str, readable: bool = False, reload
     parts_of_page = {"TITLE": html.escape(title), "PROGRAM": script}  # in one go: either may hold the other's name
     page = re.sub("|".join(parts_of_page), lambda found: parts_of_page[found[0]], packer.source("page.html"))
     return page.encode("utf-8")
+
+
+def _program(parts: list[LayerData]) -> str:
+    """The sources that such layers need, in order."""
+    along, engraved = any(part.field for part in parts), any(part.engraving for part in parts)
+    needed = {
+        "phase.js": along or engraved, "follow.js": along or engraved, "engrave.js": engraved,
+        "telling.js": any(part.told.lines for part in parts), "outline.js": any(part.outlined for part in parts),
+    }  # fmt: skip
+    return "\n".join(packer.source(name) if needed.get(name, True) else INSTEAD.get(name, "") for name in SOURCES)
 
 
 def _bytes(layer: LayerData) -> bytes:

@@ -20,6 +20,8 @@ SOURCES = (
     "constants.ps", "reconstruct.ps", "texture.ps", "drawing.ps", "outline.ps", "telling.ps", "engrave.ps", "data.ps",
     "page.ps",
 )  # fmt: skip
+#: What stands in for sources that are not needed, where others call them all the same.
+INSTEAD = {"telling.ps": "/PlanTold { } def /PaintTold { } def", "outline.ps": "/PlanOutlines { } def /PaintOutlines { } def"}
 PACKINGS = ("flate", "lzw", "readable")
 
 
@@ -37,7 +39,7 @@ def write(illustration: Illustration, packing: str = "flate") -> bytes:
         "save 300 dict begin\n"
     )
     tail = "end restore\nshowpage\n%%Trailer\n%%EOF\n"
-    program = "\n".join(packer.source(name) for name in SOURCES)
+    program = _program(parts)
     page = f"{plain(width, 4)} {plain(height, 4)} Page\n"
     picture = "".join(_picture(parts, ink) for ink in dict.fromkeys(part.color for part in parts))
     if packing == "readable":
@@ -58,6 +60,16 @@ def write(illustration: Illustration, packing: str = "flate") -> bytes:
     name = "FlateDecode" if packing == "flate" else "LZWDecode"
     body = f"{{ currentfile /ASCII85Decode filter dup /{name} filter cvx exec flushfile }} exec\n"
     return (head + body).encode("ascii") + packer.ascii85(data) + tail.encode("ascii")
+
+
+def _program(parts: list[LayerData]) -> str:
+    """The sources that such layers need, in order."""
+    told = any(part.told.lines for part in parts)
+    needed = {
+        "engrave.ps": any(part.engraving for part in parts), "telling.ps": told,
+        "outline.ps": told or any(part.outlined for part in parts),
+    }  # fmt: skip
+    return "\n".join(packer.source(name) if needed.get(name, True) else INSTEAD.get(name, "") for name in SOURCES)
 
 
 def _picture(parts: list[LayerData], ink: str) -> str:

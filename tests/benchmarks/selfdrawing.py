@@ -24,6 +24,7 @@ from scipy.ndimage import gaussian_filter, maximum_filter, minimum_filter
 from skimage import data as pictures
 
 from penink_cli.arrangement.detection import detect_edges
+from penink_cli.formats.illustration import LEVELS
 from penink_cli.ground.errors import LimitError
 from penink_cli.ground.model import Directions, GreyImage, Illustration, Layer
 from penink_cli.options.textures import find_texture
@@ -45,8 +46,7 @@ def picture(name: str, n: int = 96, texture: str = "crosshatch", **options: floa
     edges = detect_edges(grey, **{**few, **options})
     h = round(n * grey.shape[0] / grey.shape[1])
     samples = reduction.reduce(extraction.extract_samples(grey, edges), edges, n, h)
-    values = np.rint(np.clip(samples, 0, 1) * 63).astype(np.uint8)
-    layer = Layer(GreyImage(values, 63), edges, find_texture(texture), levels=64)
+    layer = Layer(GreyImage.from_grey(np.clip(samples, 0, 1), LEVELS - 1), edges, find_texture(texture), levels=LEVELS)
     return Illustration(288.0, 288.0 * h / n, (layer,))
 
 

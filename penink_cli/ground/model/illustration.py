@@ -51,7 +51,7 @@ class Layer:
     texture: Texture
     texture_name: str | None = None
     name: str | None = None
-    levels: int = 24
+    levels: int = 16
     pen_pt: float | None = None
     gamma: float = 1.0
     rule: str = "best"
