@@ -21,7 +21,10 @@ SOURCES = (
     "page.ps",
 )  # fmt: skip
 #: What stands in for sources that are not needed, where others call them all the same.
-INSTEAD = {"telling.ps": "/PlanTold { } def /PaintTold { } def", "outline.ps": "/PlanOutlines { } def /PaintOutlines { } def"}
+INSTEAD = {
+    "telling.ps": "/PlanTold { } def /PaintTold { } def",
+    "outline.ps": "/PlanOutlines { } def /PaintOutlines { } def",
+}
 PACKINGS = ("flate", "lzw", "readable")
 
 

@@ -13,12 +13,12 @@ def relax(
     sweeps, hurry: how often, and the factor of over-relaxation. The order of the sums is fixed.
     """
     cdef Py_ssize_t i, j
-    cdef int sweep
+    cdef int _sweep
     cdef double total, weight, value, rounded
     cdef Py_ssize_t h = values.shape[0]
     cdef Py_ssize_t w = values.shape[1]
     with nogil:
-        for sweep in range(sweeps):
+        for _sweep in range(sweeps):
             for i in range(h):
                 for j in range(w):
                     if low[i, j] >= high[i, j]:
