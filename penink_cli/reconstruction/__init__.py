@@ -14,6 +14,7 @@ enlarge      samples, edges → rows of any size
     tile, nearby_edges  the edges around it
     shade               what hides each sample, and the detour around that (equation 4)
     fades, sums         attenuations, weighted sums (equation 5); lanes: the make for this processor
+easing       samples of few levels → the ramps that they were rounded from
 soften       the paper's last factor of two
 weights      equation 5 at any points as a linear operator, which tests hold the rows against
 """
