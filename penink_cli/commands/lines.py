@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import click
 
 from penink_cli.ground.streams import writing
-from penink_cli.options.common import LENGTH, POSITIVE, Finite, filter_options, reporter, verbose_option
+from penink_cli.options.common import LENGTH, POSITIVE, DeviceDpi, Finite, filter_options, reporter, verbose_option
 from penink_cli.options.inputs import read_lines
 
 
@@ -42,6 +43,14 @@ from penink_cli.options.inputs import read_lines
 @click.option(
     "--loose", type=LENGTH, metavar="LENGTH", help="Each line twice, straying by this, as in a sketch: 0.8pt."
 )
+@click.option(
+    "--device-dpi",
+    type=DeviceDpi(),
+    default="600",
+    show_default=True,
+    metavar="N|none",
+    help="Resolution of the printer: screens draw the lines as wide as it paints them.",
+)
 @verbose_option
 def lines(
     file: str | None,
@@ -54,6 +63,7 @@ def lines(
     min_rank: float | None,
     ruled: float | None,
     loose: float | None,
+    device_dpi: float | None,
     verbose: bool,
     **_: Any,
 ) -> None:
@@ -79,7 +89,7 @@ def lines(
     height = width * found.height / found.width
     check_sheet(width, height)
     choice = LineChoice(pen, even, density, per_inch2, min_rank, ruled or 0.0, loose or 0.0)
-    drawn = line_strokes(found, width, height, choice)
+    drawn = replace(line_strokes(found, width, height, choice), device_dpi=device_dpi)
     least = least_rank(width, height) if min_rank is None else min_rank
     reporter(verbose)(f"{len(drawn)} of {len(found)} lines; --min-rank {least:.2f}")
     with writing(output, binary=False) as out:

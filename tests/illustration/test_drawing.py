@@ -292,3 +292,27 @@ def test_layers_that_share_the_page_add_up(penink, photo, tmp_path, ghostscript)
 def test_separate_needs_one_choice(penink, photo):
     for arguments in ([], ["--mask", "m.png", "--grey", "0,1"], ["--point", "1,1"], ["--grey", "0.5,0.5"]):
         assert penink("separate", photo, *arguments).returncode == 2
+
+
+@pytest.mark.parametrize(
+    "style", sorted(path.name.split(".")[0] for path in (ROOT / "penink_cli/styles").glob("*.json"))
+)
+def test_a_drawing_says_for_which_printer_it_is(penink, photo, tmp_path, style):
+    """Whatever it is made of: else a screen would draw it thinner than the printer does."""
+    for dpi in (300, None):
+        drawn = penink(
+            "draw",
+            photo,
+            "--style",
+            style,
+            "--width",
+            "1in",
+            "-q",
+            "--device-dpi",
+            dpi or "none",
+            "-o",
+            tmp_path / "d.jsonl",
+        )
+        assert drawn.returncode == 0, drawn.stderr
+        with (tmp_path / "d.jsonl").open("rb") as file:
+            assert json.loads(file.readline())["device_dpi"] == dpi
