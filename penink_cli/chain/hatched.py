@@ -49,7 +49,8 @@ def _over(job: Job, size: tuple[int, int], edges: str, lines: str | None) -> lis
     """Strokes over the hatching, which are ink before it is laid."""
     result = []
     if lines:
-        result.append(job.run("lines", [*job.on_paper, *job.device, *job.words("lines", "lines"), lines], "lines.jsonl"))
+        told = [*job.on_paper, *job.device, *job.words("lines", "lines")]
+        result.append(job.run("lines", [*told, lines], "lines.jsonl"))
     if "outline" in job.stages:
         least = [] if "min-length" in job.stages["outline"] else ["--min-length", str(least_length(size))]
         told = [*job.on_paper, *job.device, *job.words("outline", "outline"), *least]
