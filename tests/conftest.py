@@ -72,7 +72,8 @@ RENDERED = (
     "tests/outputs/test_raster.py", "tests/outputs/test_swelling.py", "tests/outputs/test_device.py",
     "tests/test_make.py::test_nothing_in_a_name_is_run", "tests/outputs/test_inks.py",
     "tests/blasting/test_engraving.py", "tests/blasting/test_form.py", "tests/blasting/test_rules.py",
-    "tests/blasting/test_stroke_set.py", "tests/illustration/test_layering.py::test_what_is_left_over_",
+    "tests/blasting/test_stroke_set.py", "tests/blasting/test_pressure.py",
+    "tests/illustration/test_layering.py::test_what_is_left_over_",
 )  # fmt: skip
 SLOW = (
     "tests/faults/test_degenerate.py", "tests/faults/test_environment.py", "tests/faults/test_signals.py",
@@ -86,7 +87,7 @@ SLOW = (
     "tests/illustration/test_lines.py::test_loose_and_packed_", "tests/lines/test_detection.py::test_the_list_is_of_",
     "tests/outputs/test_plotter.py::test_a_drawing_for_a_paper_", "tests/measuring/test_measure.py",
     "tests/reconstruction/test_enlarge.py::test_random_", "tests/reconstruction/test_enlarge.py::test_a_strong_",
-    "tests/reconstruction/test_thinning.py",
+    "tests/reconstruction/test_thinning.py", "tests/arrangement/test_strengths.py::test_strengths_are_the_steps_",
 )  # fmt: skip
 
 
