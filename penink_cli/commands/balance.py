@@ -18,6 +18,9 @@ from penink_cli.options.sheet import check_sheet
 if TYPE_CHECKING:
     from penink_cli.ground.model import Floats, Strokes
 
+#: How far two sheets' sides may differ, points: hatching's has whole pixels of a grey, that of lines the photo's.
+SAME_PT = 0.5
+
 _made: tuple[object, list[Strokes] | list[Floats]] | None = None  # of the last plates: one call of `draw` wants each
 
 
@@ -120,7 +123,7 @@ def _balanced(
     greys = [pgm.read(stream, source_name(path), max_pixels) for path, stream in named[n : 2 * n]]
     check_sheet(drawn[0].width, drawn[0].height, max_pixels)
     for path, layer in zip((*files, *ink_files), drawn, strict=True):
-        if (layer.width, layer.height) != (drawn[0].width, drawn[0].height):
+        if max(abs(layer.width - drawn[0].width), abs(layer.height - drawn[0].height)) > SAME_PT:
             size = f"{layer.width:g} x {layer.height:g} pt, the first one {drawn[0].width:g} x {drawn[0].height:g}"
             raise ParameterError(f"{source_name(path)}: a sheet of {size}")
     for path, grey in zip(tone_files, greys, strict=True):

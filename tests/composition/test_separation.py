@@ -157,3 +157,17 @@ def test_draw_in_inks_is_the_chain_it_prints(tmp_path, penink):
         layers = json.loads(archive.read("illustration.json"))["layers"]
     assert [layer["name"] for layer in layers] == ["yellow", "cyan", "magenta", "black"]
     assert len({layer["edges"] for layer in layers}) == 1
+
+
+@pytest.mark.parametrize(("width", "sides"), [("1.3in", (97, 61)), ("101pt", (61, 97))])
+def test_plates_and_lines_whose_sheets_are_a_part_of_a_pixel_apart(tmp_path, penink, width, sides):
+    """The hatching's height is that of a grey in whole pixels, the lines' that of the photo."""
+    path = tmp_path / "odd.png"
+    y, x = np.mgrid[: sides[1], : sides[0]]
+    disc = np.hypot(x - sides[0] / 2, y - sides[1] / 2) < 20
+    Image.fromarray(np.where(disc[..., None], (60, 90, 160), (230, 210, 140)).astype(np.uint8)).save(path)
+    for style in ("house", "architect"):
+        drawn = penink(
+            "draw", "--inks", "cmyk", "--style", style, "--width", width, "-q", path, "-o", tmp_path / "odd.svg"
+        )
+        assert drawn.returncode == 0, drawn.stderr
