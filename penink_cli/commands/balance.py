@@ -13,7 +13,7 @@ from penink_cli.ground.streams import reading, source_name, writing
 from penink_cli.options.common import Finite, output_options, processors, threads_option
 from penink_cli.options.inputs import only_one_standard_input
 from penink_cli.options.layers import files_argument
-from penink_cli.options.sheet import check_sheet
+from penink_cli.options.sheet import check_area
 
 if TYPE_CHECKING:
     from penink_cli.ground.model import Floats, Strokes
@@ -121,7 +121,7 @@ def _balanced(
     named = list(zip((*files, *tone_files, *ink_files), map(io.BytesIO, contents), strict=True))
     drawn = [strokes.read(stream, source_name(path)) for path, stream in (*named[:n], *named[2 * n :])]
     greys = [pgm.read(stream, source_name(path), max_pixels) for path, stream in named[n : 2 * n]]
-    check_sheet(drawn[0].width, drawn[0].height, max_pixels)
+    check_area(drawn[0].width, drawn[0].height, max_pixels)
     for path, layer in zip((*files, *ink_files), drawn, strict=True):
         if max(abs(layer.width - drawn[0].width), abs(layer.height - drawn[0].height)) > SAME_PT:
             size = f"{layer.width:g} x {layer.height:g} pt, the first one {drawn[0].width:g} x {drawn[0].height:g}"

@@ -25,13 +25,18 @@ def check_sheet(width_pt: float, height_pt: float, max_pixels: int | None = None
     if width_pt * height_pt > 60 * 40 * 5184 * 4:
         raise ParameterError(f"{width_pt:g} × {height_pt:g} pt on paper; 9600 square inches are allowed")
     if max_pixels is not None:
-        context = click.get_current_context(silent=True)
-        if context and context.get_parameter_source("max_pixels") is ParameterSource.DEFAULT:
-            max_pixels = SHEET_PIXELS
-        pixels = round(width_pt * height_pt * PIXELS_PER_PT**2)
-        if pixels > max_pixels:
-            size = f"{width_pt / 72:.4g} × {height_pt / 72:.4g} in"
-            raise LimitError(f"{size} on paper needs {pixels} pixels; at most {max_pixels} are allowed (--max-pixels)")
+        check_area(width_pt, height_pt, max_pixels)
     if max(width_pt, height_pt) < SMALL_PT or min(width_pt, height_pt) < THIN_PT:
         size = f"{width_pt:.3g} × {height_pt:.3g} pt ({width_pt / MM:.2g} × {height_pt / MM:.2g} mm)"
         warn(f"the drawing is {size} on paper, which shows little; a bare number is points, 72 to the inch", "sheet")
+
+
+def check_area(width_pt: float, height_pt: float, max_pixels: int) -> None:
+    """Refuse sheets whose area takes too much memory and time: by --max-pixels, else by `SHEET_PIXELS`."""
+    context = click.get_current_context(silent=True)
+    if context and context.get_parameter_source("max_pixels") is ParameterSource.DEFAULT:
+        max_pixels = SHEET_PIXELS
+    pixels = round(width_pt * height_pt * PIXELS_PER_PT**2)
+    if pixels > max_pixels:
+        size = f"{width_pt / 72:.4g} × {height_pt / 72:.4g} in"
+        raise LimitError(f"{size} on paper needs {pixels} pixels; at most {max_pixels} are allowed (--max-pixels)")

@@ -64,6 +64,7 @@ def place(tmp_path_factory):
     penink detect-directions -e photo.edges.json photo.png -o photo.directions.pgm
     penink detect-lines photo.png -o photo.lines.json
     penink to-svg photo.strokes.jsonl -o hair.svg
+    for ink in blue red; do cp photo.pgm $ink.pgm; cp photo.strokes.jsonl $ink.jsonl; done
     penink pack keys.illustration.json -o keys.penink"""
     subprocess.run(["bash", "-e", "-c", run], cwd=folder, env=environment, check=True)
     return folder, environment
