@@ -6,6 +6,7 @@ blast.blast             what is to be drawn as a task.Task, for a rule of rules/
     marks                   small dark things on bare paper, filled first
 rules/                  best, or what --rule says
   solids                what is darker than hatching can be, filled
+    bordered                strokes along the border, rows within
   hatching.hatch_sheet  textures of layers: a closed loop on the tone
     thin                    a stroke along each thin dark thing
     shares                  what each layer owes

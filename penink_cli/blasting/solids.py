@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from penink_cli.blasting import marks
+from penink_cli.blasting import bordered, marks
 from penink_cli.blasting.light import LightThings
 from penink_cli.blasting.sheet import Cells, resample
 from penink_cli.composition.filters import blurred
@@ -56,7 +56,8 @@ def solids(
     core = smooth > black
     falls = (distance(smooth >= LIGHT) < FALLS_PT * px) & (distance(~core) < FALLS_PT * px)
     # how much darker a place is than what black begins with there, half way up or down where it does
-    value = np.where(falls, np.maximum(tone, smooth) - marks.LEVEL, smooth - black) + marks.LEVEL
+    darker = np.where(smooth > marks.LEVEL, np.maximum(tone, smooth), tone)  # smoothed outside, it would reach out
+    value = np.where(falls, darker - marks.LEVEL, smooth - black) + marks.LEVEL
     if light:
         near = resample(light.within(FALLS_PT).astype(np.float64), h, w) > 0
         value = np.where(near & falls, tone, value)  # smoothed, it would be smaller
@@ -72,8 +73,8 @@ def solids(
     mine = distance(~keep[part]) < 1.5  # up to the places between which the border lies
     chains: list[Floats] = []
     widths: list[float] = []
-    marks.fill(
-        np.where(mine, np.clip(value, 0, 1), 0.0), np.zeros(2), np.array([width_pt / w, height_pt / h]),
+    bordered.fill(
+        np.where(mine, np.clip(value, 0, 1), 0.0), np.array([width_pt / w, height_pt / h]),
         PEN_PT if pen_pt is None else pen_pt, gain_pt, chains, widths, pen_pt is not None,
     )  # fmt: skip
     return Strokes.of(width_pt, height_pt, chains, widths)

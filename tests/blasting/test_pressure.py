@@ -8,9 +8,11 @@ import numpy as np
 import pytest
 import skimage.data
 
+from penink_cli.blasting import bordered
 from penink_cli.blasting.blast import blast, left_over
 from penink_cli.blasting.sheet import coverage
 from penink_cli.blasting.solids import solids
+from penink_cli.ground.model import Strokes
 from penink_cli.options.textures import find_texture
 
 SIDE = 144.0
@@ -76,6 +78,47 @@ def test_black_is_solid_with_a_clean_border(pen):
     soft = ink[800]  # black from where the tone is .93
     dark = np.flatnonzero(soft) / 8
     assert abs(dark.min() - (100 - 0.47 * 40)) < 1 and abs(dark.max() - (100 + 0.47 * 40)) < 1
+
+
+@pytest.mark.parametrize(("pen", "gain"), [(None, 0.0), (0.6, 0.0), (None, 0.06)])
+def test_the_border_of_black_is_smooth(pen, gain):
+    """Rows that end at a round border stand out of it and leave notches, a quarter of a point and more."""
+    centre, fine = np.array([72.3, 71.6]), 32
+    y, x = (np.mgrid[: 288 * 16, : 288 * 16] + 0.5) / 32
+    tone = (np.hypot(x - centre[0], y - centre[1]) < 15).reshape(288, 16, 288, 16).mean(axis=(1, 3))
+    strokes = solids(tone, SIDE, SIDE, pen, gain, np.zeros((150, 150), np.float32))
+    ink = coverage(replace(strokes, widths=strokes.widths + gain), int(SIDE) * fine, int(SIDE) * fine)
+    angle, radius = np.arange(720)[:, None] * np.pi / 360, np.arange(0.0, 17.0, 0.01)
+    column, row = (
+        ((c + radius * turn(angle)) * fine).astype(int) for c, turn in zip(centre.tolist(), (np.cos, np.sin))
+    )
+    along = ink[row, column]
+    assert along[:, radius < 14.8].min() > 0.85
+    reached = along.sum(axis=1) * 0.01
+    assert np.abs(reached - 15).max() < 0.06 and reached.std() < 0.02
+
+
+def test_black_with_holes_necks_and_the_frame_is_filled_and_nothing_else():
+    """Bars narrower than a pen, and than two and a half, join two blacks; one has a hole; both touch the frame."""
+    tone = np.zeros((288, 288))
+    tone[0:90, 0:90] = tone[0:90, 140:240] = 1.0
+    tone[40:41, 90:140] = tone[50:53, 90:140] = 1.0
+    tone[30:60, 170:200] = 0.0
+    chains, widths = [], []
+    bordered.fill(tone, np.array([0.5, 0.5]), 0.6, 0.0, chains, widths, False)
+    ink = coverage(Strokes.of(SIDE, SIDE, chains, widths), 1152, 1152)
+    true = np.kron(tone, np.ones((4, 4)))
+    beyond = np.pad(true, 2, mode="edge")
+    near = np.max([beyond[i : i + 1152, j : j + 1152] for i in range(5) for j in range(5)], axis=0)
+    assert ink[near == 0].max() == 0  # a quarter of a point out
+    solid = true.astype(bool)
+    solid[:, 360:560] = False
+    for edge in (0, 360, 560, 960, 680, 800):
+        solid[:, max(0, edge - 3) : edge + 3] = False
+    for edge in (0, 360, 120, 240):
+        solid[max(0, edge - 3) : edge + 3] = False
+    assert ink[solid].min() > 0.9
+    assert ink[202:210, 380:540].min() == 1.0  # the bar of a point and a half
 
 
 def test_what_is_not_black_or_drawn_already_is_left():

@@ -1,0 +1,155 @@
+"""Filling with a clean border: strokes along the border, just within it, and rows of a pen inside of them.
+
+Rows alone end in steps that are seen from 400 dpi on. Here a stroke's outer side is the border. Rows end beneath it:
+the middles of both lie at least half a painted width within, so that nothing of them can stick out, and rows lie close
+enough that together they cover all. What is too thin for that is left to rows that begin and end at the border.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from penink_cli.blasting import curve_fitting, curves, marks
+from penink_cli.ground.masks import distance, labelled
+from penink_cli.ground.model import Floats
+
+#: The border is told by places STEP_PT apart, and every place by its neighbours, ROUNDS times: it is known to about
+#: a pixel, of which there are two to four in a point.
+STEP_PT, ROUNDS = 0.25, 2
+#: How far a stroke may stray from its place. Rows begin WITHIN of half a painted width from the border and are PITCH
+#: painted widths apart: what lies beyond the stroke, at 2 halves less this, is then no further than 2 - 1.05 = .95
+#: halves from a place of a row, of which .75 are needed.
+TOLERANCE_PT, WITHIN, PITCH = 0.02, 1.05, 0.75
+#: The least area too thin for strokes along its border that is filled, square points: less is roughness of the border.
+LEAST_THIN_PT2 = 0.3
+
+
+def fill(
+    tone: Floats, scale: Floats, pen_pt: float, gain_pt: float, chains: list[Floats], widths: list[float], fixed: bool
+) -> None:
+    """Strokes that fill where the tone (h, w) exceeds `marks.LEVEL`; scale (2,): a pixel's width and height, points.
+
+    pen_pt: their width, which thin places narrow unless it is `fixed`; gain_pt: how much wider the device paints them.
+    """
+    half = (pen_pt + gain_pt) / 2
+    inside = tone > marks.LEVEL
+    if not inside.any():
+        return
+    rings = [ring for ring in _rings(tone, scale) if len(ring) > 4]
+    edges = []
+    for ring in rings:
+        normal = _normals(ring)
+        roomy = _inside(tone, scale, ring + 2 * half * normal)
+        for piece, whole in _pieces(ring + half * normal, roomy):
+            chains.append(curve_fitting.fit(piece, TOLERANCE_PT, whole))
+            widths.append(pen_pt)
+        path = ring + WITHIN * half * normal
+        edges.append(np.stack([path, np.roll(path, -1, axis=0)], axis=1))
+    if edges:
+        for x0, x1, y in _rows(np.concatenate(edges), PITCH * 2 * half):
+            chains.append(np.array([[x0 + (x1 - x0) * t / 3, y] for t in range(4)]))
+            widths.append(pen_pt)
+    thin = _thin(inside, half, 1 / float(scale[0]))
+    if thin.any():
+        marks.fill(np.where(thin, tone, 0.0), np.zeros(2), scale, pen_pt, gain_pt, chains, widths, fixed)
+
+
+def _rings(tone: Floats, scale: Floats) -> list[Floats]:
+    """The border as smooth rings (n, 2), points, the last beside the first; what is dark lies on the same side of all.
+
+    It closes along the frame.
+    """
+    from skimage.measure import find_contours  # only where there is black
+
+    level = marks.LEVEL
+    padded = np.pad(tone, 1, mode="edge")
+    frame = np.ones(padded.shape, bool)
+    frame[1:-1, 1:-1] = False
+    padded[frame] = np.where(padded[frame] > level, 2 * level - padded[frame], 0.0)  # half way is the frame
+    padded[[0, 0, -1, -1], [0, -1, 0, -1]] = 0.0
+    rings = []
+    for contour in find_contours(padded, level):
+        points = (contour[:-1, ::-1] - 0.5) * scale
+        points = _sampled(points)
+        for _ in range(ROUNDS):
+            points = (np.roll(points, 1, axis=0) + 2 * points + np.roll(points, -1, axis=0)) / 4
+        rings.append(points)
+    return rings
+
+
+def _sampled(ring: Floats) -> Floats:
+    """Places along a ring (n, 2), about `STEP_PT` apart."""
+    legs = np.roll(ring, -1, axis=0) - ring
+    along = np.concatenate([[0.0], np.cumsum(np.sqrt(legs[:, 0] * legs[:, 0] + legs[:, 1] * legs[:, 1]))])
+    count = max(1, int(along[-1] / STEP_PT))
+    at = np.arange(count) * (along[-1] / count)
+    which = np.clip(np.searchsorted(along, at, side="right") - 1, 0, len(ring) - 1)
+    part = (at - along[which]) / np.maximum(along[which + 1] - along[which], 1e-12)
+    return np.asarray(ring[which] + legs[which] * part[:, None])
+
+
+def _normals(ring: Floats) -> Floats:
+    """Unit normals (n, 2) towards what is dark."""
+    ahead = np.roll(ring, -1, axis=0) - np.roll(ring, 1, axis=0)
+    length = np.maximum(np.sqrt(ahead[:, 0] * ahead[:, 0] + ahead[:, 1] * ahead[:, 1]), 1e-9)
+    return np.column_stack([-ahead[:, 1], ahead[:, 0]]) / length[:, None]
+
+
+def _inside(tone: Floats, scale: Floats, points: Floats) -> marks.Mask:
+    """Whether the tone between pixels exceeds the level at points (n, 2)."""
+    h, w = tone.shape
+    at = np.clip(points / scale - 0.5, 0, [w - 1, h - 1])
+    i = np.minimum(at.astype(np.int64), [max(w - 2, 0), max(h - 2, 0)])
+    fx, fy = (at - i).T
+    x, y = i.T
+    across = np.minimum(x + 1, w - 1)
+    down = np.minimum(y + 1, h - 1)
+    upper = tone[y, x] * (1 - fx) + tone[y, across] * fx
+    lower = tone[down, x] * (1 - fx) + tone[down, across] * fx
+    return np.asarray(upper * (1 - fy) + lower * fy > marks.LEVEL)
+
+
+def _pieces(ring: Floats, wanted: marks.Mask) -> list[tuple[Floats, bool]]:
+    """The runs of a ring's places that are wanted, and whether it is the whole ring, which ends where it began."""
+    if wanted.all():
+        return [(np.concatenate([ring, ring[:1]]), True)]
+    begin = int(np.argmin(wanted))
+    ring, wanted = np.roll(ring, -begin, axis=0), np.roll(wanted, -begin)
+    change = np.flatnonzero(np.diff(np.concatenate([wanted, [False]]).astype(np.int8))) + 1
+    return [(ring[i:j], False) for i, j in zip(change[::2].tolist(), change[1::2].tolist()) if j - i > 1]
+
+
+def _rows(edges: Floats, pitch: float) -> list[tuple[float, float, float]]:
+    """Begin, end and height of rows within rings that are given by their edges (m, 2, 2).
+
+    Within is where they wind around a place more often with the dark inside than outside: where a ring that was moved
+    inwards crosses itself, as in a narrow place, it winds the wrong way around.
+    """
+    (x0, y0), (x1, y1) = edges[:, 0].T, edges[:, 1].T
+    # the rows that an edge crosses: those whose number k has k + 1/2 from the lower end to before the upper
+    low, high = np.ceil(np.minimum(y0, y1) / pitch - 0.5), np.ceil(np.maximum(y0, y1) / pitch - 0.5)
+    count = (high - low).astype(np.int64)
+    which = np.repeat(np.arange(len(count)), count)
+    row = low[which].astype(np.int64) + curves.ramp(count)
+    y = (row + 0.5) * pitch
+    x = x0[which] + (x1 - x0)[which] * ((y - y0[which]) / (y1 - y0)[which])
+    turn = np.where(y1 > y0, -1, 1)[which]
+    order = np.lexsort((x, row))
+    winding = np.cumsum(turn[order])
+    within = winding > 0
+    before = np.concatenate([[False], within[:-1]])
+    begin, end = order[within & ~before], order[~within & before]
+    return list(zip(x[begin].tolist(), x[end].tolist(), y[begin].tolist()))
+
+
+def _thin(inside: marks.Mask, half: float, px: float) -> marks.Mask:
+    """Where it is too thin for strokes along the border, and as far around as rows need to begin, (h, w).
+
+    px: pixels in a point.
+    """
+    deep = distance(np.pad(inside, 1))[1:-1, 1:-1] - 0.5 >= half * px
+    thin = inside & (distance(~deep) > half * px + 1.0)
+    part, boxes = labelled(thin)
+    size = np.bincount(part.ravel(), minlength=len(boxes) + 1)
+    thin &= size[part] >= LEAST_THIN_PT2 * px * px
+    return np.asarray(inside & (thin | (distance(~thin) < half * px + 1.5)))
