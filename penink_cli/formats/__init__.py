@@ -6,7 +6,7 @@ edge_list       edges; lines: telling lines; directions: fields; strokes; textur
   strict_json     what all JSON of these is read with
 svg_texture     drawings read as textures
 illustration    the manifest, and what it names; or all of that in one file:
-  archive         the members of a `.penink`
+  archive         the members of a `.penink`; parts: all but the manifest in one of them
   compact         samples, fields, texts in few bytes; compact_edges, compact_lines
 recognise       what a file is, for the error line of who gave the wrong one; signatures: how pictures begin
 """

@@ -11,8 +11,8 @@ first, the eighth set on all but the last), then one stretch of the adaptive cod
 ``PIt1``   number of bytes                            a text, byte by byte
 =========  =========================================  ==========================================
 
-`compact_edges` and `compact_lines` have two more. Samples beside edges are read with the same edges that they were
-written with: which neighbours tell something of a sample is not said again.
+`compact_edges` and `compact_lines` have two more; `parts` is how an archive holds them all. Samples beside edges are
+read with the same edges that they were written with: which neighbours tell something of a sample is not said again.
 
 Directions are kept as ANGLES angles of a half turn, 5.625° apart (in ``PId1``, which is read, ANGLES_1),
 and as confidence in sevenths, one for 4 × 4 samples.
@@ -78,9 +78,9 @@ def samples_bytes(image: GreyImage, edges: EdgeList | None = None) -> bytes:
     values = np.ascontiguousarray(image.values, np.int32)
     if w * h <= FITTED_SAMPLES and image.maxval < FITTED_LEVELS:
         coder.fitted(values, image.maxval, _hidden(edges, w, h))
-        return SAMPLES_FITTED + _numbers(w, h, image.maxval, int(beside)) + _finished(coder)
+        return SAMPLES_FITTED + written_numbers(w, h, image.maxval, int(beside)) + _finished(coder)
     coder.samples(values, image.maxval, _hidden(edges, w, h) if beside else None)
-    return (SAMPLES_BESIDE if beside else SAMPLES) + _numbers(w, h, image.maxval) + _finished(coder)
+    return (SAMPLES_BESIDE if beside else SAMPLES) + written_numbers(w, h, image.maxval) + _finished(coder)
 
 
 def samples_from(data: bytes, max_pixels: int, edges: EdgeList | None = None) -> GreyImage:
@@ -131,7 +131,7 @@ def text_bytes(text: bytes) -> bytes:
         raise LimitError(f"a text of {len(text)} bytes; {MAX_TEXT} are allowed")
     coder = Coder()
     coder.text(np.frombuffer(bytearray(text), np.uint8))
-    return TEXT + _numbers(len(text)) + _finished(coder)
+    return TEXT + written_numbers(len(text)) + _finished(coder)
 
 
 def text_from(data: bytes) -> bytes:
@@ -166,7 +166,7 @@ def directions_bytes(field: Directions) -> bytes:
     coder = Coder()
     _code_angles(coder, nearest, ANGLES)
     coder.samples(_by_blocks(field.confidence), SURE)
-    return DIRECTIONS + _numbers(columns, rows) + _finished(coder)
+    return DIRECTIONS + written_numbers(columns, rows) + _finished(coder)
 
 
 def directions_from(data: bytes) -> Directions:
@@ -255,7 +255,8 @@ def _within_3(value: int) -> int:
 # ------------------------------------------------------------------------------ headers
 
 
-def _numbers(*values: int) -> bytes:
+def written_numbers(*values: int) -> bytes:
+    """Whole numbers from 0, seven bits a byte."""
     out = bytearray()
     for value in values:
         while value > 127:
@@ -265,11 +266,9 @@ def _numbers(*values: int) -> bytes:
     return bytes(out)
 
 
-def _header(data: bytes, magic: bytes, count: int) -> tuple[list[int], bytes]:
-    """The whole numbers after the magic bytes, and what follows them."""
-    if data[:4] != magic:
-        raise FormatError(f"begins with {data[:4]!r}; {magic!r} is expected")
-    at, values = 4, []
+def read_numbers(data: bytes, at: int, count: int) -> tuple[list[int], int]:
+    """So many whole numbers from byte `at`, and where the next byte is. Raises FormatError."""
+    values = []
     for _ in range(count):
         value = shift = 0
         while True:
@@ -281,6 +280,14 @@ def _header(data: bytes, magic: bytes, count: int) -> tuple[list[int], bytes]:
             if data[at - 1] < 128:
                 break
         values.append(value)
+    return values, at
+
+
+def _header(data: bytes, magic: bytes, count: int) -> tuple[list[int], bytes]:
+    """The whole numbers after the magic bytes, and what follows them."""
+    if data[:4] != magic:
+        raise FormatError(f"begins with {data[:4]!r}; {magic!r} is expected")
+    values, at = read_numbers(data, 4, count)
     _check_size(len(data) - at)
     return values, data[at:]
 

@@ -19,7 +19,7 @@ import numpy as np
 
 from penink_cli.formats import edge_list
 from penink_cli.formats._compiled.compact import Coder
-from penink_cli.formats.compact import MAX_GRID, _check_end, _finished, _header, _numbers
+from penink_cli.formats.compact import MAX_GRID, _check_end, _finished, _header, written_numbers
 from penink_cli.geometry.trails import Trail, trails
 from penink_cli.ground.errors import FormatError
 from penink_cli.ground.model import EdgeList, Ints
@@ -58,7 +58,7 @@ def edges_bytes(edges: EdgeList, columns: int, rows: int) -> bytes:
     """
     grid = np.rint(edges.vertices * (columns / edges.width, rows / edges.height)).astype(np.int64)
     strong = edges.strength is not None
-    head = _numbers(edges.width, edges.height, columns, rows, len(edges.edges), int(strong))
+    head = written_numbers(edges.width, edges.height, columns, rows, len(edges.edges), int(strong))
     coder = Coder()
     if len(edges.edges):
         found = trails(grid, edges.edges)

@@ -19,7 +19,7 @@ import numpy.typing as npt
 
 from penink_cli.formats import lines as lines_format
 from penink_cli.formats._compiled.compact import Coder
-from penink_cli.formats.compact import MAX_GRID, _check_end, _finished, _header, _numbers
+from penink_cli.formats.compact import MAX_GRID, _check_end, _finished, _header, written_numbers
 from penink_cli.geometry import curves
 from penink_cli.ground.errors import FormatError, LimitError
 from penink_cli.ground.model import Floats, Ints, Lines
@@ -88,7 +88,7 @@ def lines_bytes(lines: Lines) -> bytes:
         coder.number(len(points), _COUNT, int(breadth > 0))
         _code_path_2(coder, points, columns, rows)
         _code_weights_2(coder, pressed)
-    return LINES + _numbers(lines.width, lines.height, len(items)) + _finished(coder)
+    return LINES + written_numbers(lines.width, lines.height, len(items)) + _finished(coder)
 
 
 def lines_from(data: bytes) -> Lines:

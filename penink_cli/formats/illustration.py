@@ -5,8 +5,8 @@
                  "texture": "crosshatch", "outline": {"pen": 0.7, "min_strength": 0.1}}]}
 
 Samples are PGM files or compact ones, edges are edge lists or compact ones, and so are directions, told apart by
-their first bytes; paths are relative to the manifest. The same manifest, beside compact members, is what a
-``*.penink`` archive holds. See README.md beside this file and schemas/illustration.schema.json.
+their first bytes; paths are relative to the manifest. The same manifest, beside one file of compact members, its
+``"parts"``, is what a ``*.penink`` archive holds. See README.md beside this file and schemas/illustration.schema.json.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
-from penink_cli.formats import compact, compact_edges, compact_lines, directions, edge_list, pgm, strict_json
+from penink_cli.formats import compact, compact_edges, compact_lines, directions, edge_list, parts, pgm, strict_json
 from penink_cli.formats import lines as lines_format
 from penink_cli.formats import texture as texture_format
 from penink_cli.ground.errors import FormatError, LimitError, PeninkError
@@ -38,12 +38,13 @@ from penink_cli.ground.rules import RULES
 
 FORMAT = "penink-illustration"
 MANIFEST = "illustration.json"  # its name within an archive
+PARTS = "parts"  # and that of all the rest
 MAX_BYTES = 1 << 20  # of the manifest
 MAX_LAYERS = 64
 MAX_SIZE = 144_000.0  # points
 MAX_PEN = 72.0
 MAX_STRAY = 144.0  # of lines, points
-COMPACT = b"PI"  # how all compact members begin
+COMPACT = parts.COMPACT
 LEVELS = 16  # of grey, unless a layer says another number: what ink shows of more is nothing
 
 _SHIPPED = re.compile(r"[a-z0-9_-]{1,60}", re.ASCII)
@@ -68,12 +69,13 @@ def read(text: bytes, source: str, fetch: Fetch, shipped: Shipped, max_pixels: i
         items = strict_json.array(strict_json.member(document, "layers"), "layers")
         if not 1 <= len(items) <= MAX_LAYERS:
             raise FormatError(f"{len(items)} layers; 1 to {MAX_LAYERS} are allowed")
+        fetch_part = _with_parts(document, fetch)
         layers: list[Layer] = []
         left = min(max_pixels, compact.MAX_SAMPLES)
         for i, item in enumerate(items):
             if not isinstance(item, dict):
                 raise FormatError(f"layer {i} is {strict_json.quoted(item)}; an object is needed")
-            layers.append(_layer(item, f"layer {i}", fetch, shipped, left))
+            layers.append(_layer(item, f"layer {i}", fetch_part, shipped, left))
             left -= layers[-1].samples.values.size
     except PeninkError as error:
         from penink_cli.formats.recognise import explained
@@ -82,16 +84,35 @@ def read(text: bytes, source: str, fetch: Fetch, shipped: Shipped, max_pixels: i
     return Illustration(width, height, tuple(layers))
 
 
+def _with_parts(document: dict[str, Any], fetch: Fetch) -> Fetch:
+    """How members are fetched, those of the file of parts among them if the manifest names one."""
+    if "parts" not in document:
+        return fetch
+    held: list[bytes] = _fetched(document, "parts", "", fetch, parts.parts_from)
+
+    def fetch_part(path: str) -> bytes:
+        found = parts.chosen(held, path)
+        return fetch(path) if found is None else found
+
+    return fetch_part
+
+
+def _fetched(item: dict[str, Any], name: str, place: str, fetch: Fetch, take: Callable[[bytes], Any]) -> Any:
+    """What the member of that path holds; errors name it."""
+    shown = f"{place}: {name}" if place else name
+    path = strict_json.text(strict_json.member(item, name, place), shown)
+    what = f"{shown} {strict_json.quoted(path)}"
+    if not path or path.startswith("/") or "\0" in path:
+        raise FormatError(f"{what}; a path relative to the manifest is needed")
+    try:
+        return take(fetch(path))
+    except PeninkError as error:
+        raise type(error)(f"{what}: {error.message}") from None
+
+
 def _layer(item: dict[str, Any], place: str, fetch: Fetch, shipped: Shipped, max_pixels: int) -> Layer:
     def member(name: str, take: Callable[[bytes], Any]) -> Any:
-        path = strict_json.text(strict_json.member(item, name, place), f"{place}: {name}")
-        what = f"{place}: {name} {strict_json.quoted(path)}"
-        if not path or path.startswith("/") or "\0" in path:
-            raise FormatError(f"{what}; a path relative to the manifest is needed")
-        try:
-            return take(fetch(path))
-        except PeninkError as error:
-            raise type(error)(f"{what}: {error.message}") from None
+        return _fetched(item, name, place, fetch, take)
 
     def number(name: str, default: float, least: float, most: float) -> float:
         return strict_json.number(item[name], f"{place}: {name}", least, most) if name in item else default
@@ -218,32 +239,30 @@ def _texture(data: bytes) -> Texture:
 
 
 def members(illustration: Illustration) -> dict[str, bytes]:
-    """Manifest and compact members by name, as an archive holds them; defaults are not written.
+    """Manifest and the file of compact members by name, as an archive holds them; defaults are not written.
 
-    What layers share, as plates of one picture share its edges, is one member.
+    What layers share, as plates of one picture share its edges, is one part.
     """
-    files: dict[str, bytes] = {MANIFEST: b""}
-    named: dict[bytes, str] = {}
+    places: dict[bytes, int] = {}  # of the parts, in their order
 
-    def put(item: dict[str, Any], kind: str, i: int, content: bytes) -> None:
-        item[kind] = named.setdefault(content, f"{i}.{kind}")
-        files[item[kind]] = content
+    def put(item: dict[str, Any], kind: str, content: bytes) -> None:
+        item[kind] = parts.name(places.setdefault(content, len(places)))
 
     layers = []
-    for i, layer in enumerate(illustration.layers):
+    for layer in illustration.layers:
         rows, columns = layer.samples.values.shape
         item: dict[str, Any] = {} if layer.name is None else {"name": layer.name}
-        put(item, "samples", i, compact.samples_bytes(layer.samples, layer.edges))
+        put(item, "samples", compact.samples_bytes(layer.samples, layer.edges))
         if layer.edges is not None:
-            put(item, "edges", i, _edges_bytes(layer.edges, columns, rows))
+            put(item, "edges", _edges_bytes(layer.edges, columns, rows))
         if layer.directions is not None:
-            put(item, "directions", i, compact.directions_bytes(layer.directions))
+            put(item, "directions", compact.directions_bytes(layer.directions))
         if layer.lines is not None:
-            put(item, "lines", i, compact_lines.lines_bytes(layer.lines))
+            put(item, "lines", compact_lines.lines_bytes(layer.lines))
             if chosen := _line_item(layer.line):
                 item["line"] = chosen
         if layer.texture_name is None:
-            put(item, "texture", i, compact.text_bytes(_texture_bytes(turned(layer.texture, -layer.turn))))
+            put(item, "texture", compact.text_bytes(_texture_bytes(turned(layer.texture, -layer.turn))))
         elif layer.texture_name != "crosshatch":
             item["texture"] = layer.texture_name
         for name, value, default in (
@@ -263,10 +282,12 @@ def members(illustration: Illustration) -> dict[str, bytes]:
         layers.append(item)
     manifest = {
         "format": FORMAT, "version": 1, "width": _plain(illustration.width), "height": _plain(illustration.height),
-        "layers": layers,
+        "parts": PARTS, "layers": layers,
     }  # fmt: skip
-    files[MANIFEST] = json.dumps(manifest, separators=(",", ":")).encode("ascii")
-    return files
+    return {
+        MANIFEST: json.dumps(manifest, separators=(",", ":")).encode("ascii"),
+        PARTS: parts.parts_bytes(list(places)),
+    }
 
 
 def _line_item(line: LineChoice) -> dict[str, Any]:

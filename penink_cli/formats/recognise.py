@@ -113,7 +113,7 @@ def kind(start: bytes) -> tuple[str, str] | None:
     if found := _NETPBM.match(start):
         name = _NETPBM_NAMES[found[1]]
         return ("pgm", _NAMES["pgm"]) if name == "PGM" else ("photo", f"a {name} photograph")
-    if start.startswith((b"PK\x03\x04", b"PIs", b"PIe", b"PId", b"PIl", b"PIt")):
+    if start.startswith((b"PK\x03\x04", b"PIs", b"PIe", b"PId", b"PIl", b"PIt", b"PIp")):
         return "illustration", "a packed illustration" if start.startswith(b"PK") else "a part of a packed illustration"
     if start.startswith((b"%!PS", b"%PDF-")):
         return "page", "PostScript" if start.startswith(b"%!") else "PDF"

@@ -20,7 +20,7 @@ import numpy as np
 from PIL import Image
 
 from penink_cli.blasting.blast import blast
-from penink_cli.formats import archive, illustration
+from penink_cli.formats import archive, illustration, parts
 from penink_cli.options.inputs import read_illustration
 from penink_cli.options.textures import find_texture
 from tests.benchmarks.drawing import seen
@@ -52,6 +52,14 @@ def drawn(name: str, folder: Path) -> Path:
     return path
 
 
+def held(packed: bytes) -> dict[str, bytes]:
+    """What the first layer of an archive is made of: samples, edges, directions, lines, by these names."""
+    files = archive.read(packed, "")
+    manifest = json.loads(files["illustration.json"])
+    kept, layer = parts.parts_from(files[manifest["parts"]]), manifest["layers"][0]
+    return {kind: data for kind in layer if (data := parts.chosen(kept, str(layer[kind]))) is not None}
+
+
 def sizes(names: list[str], folder: Path) -> None:
     print(
         "bytes of draw -o x.penink, half a megapixel; plain: --style true, without directions and lines; s of processor"
@@ -61,7 +69,7 @@ def sizes(names: list[str], folder: Path) -> None:
     rows = []
     for name in names:
         path = drawn(name, folder)
-        members = {key.rsplit(".", 1)[-1]: len(data) for key, data in archive.read(path.read_bytes(), "").items()}
+        members = {kind: len(data) for kind, data in held(path.read_bytes()).items()}
         start = time.process_time()
         whole = read_illustration(str(path), 10**8)
         middle = time.process_time()
@@ -92,6 +100,7 @@ def before(name: str, folder: Path) -> Path:
     penink("extract-samples", "-e", f["e.json"], f["g.pgm"], "-o", f["s.pgm"])
     penink("reduce", "-e", f["e.json"], "--photo", f["g.pgm"], "--auto", f["s.pgm"], "-o", f["r.pgm"])
     now = json.loads(archive.read(drawn(name, folder).read_bytes(), "")["illustration.json"])
+    del now["parts"]
     layer = now["layers"][0] | {
         "samples": "r.pgm",
         "edges": "e.json",

@@ -34,6 +34,7 @@ from penink_cli.reconstruction.extraction import contaminated, extract_samples
 from penink_cli.reconstruction.grid import choose_grid
 from penink_cli.reconstruction.reduction import reduce
 from tests.benchmarks._scenes import random_scene, true_steps
+from tests.benchmarks.archives import held
 
 PHOTOS = {"camera": 4.0, "coins": 4.0, "astronaut": 3.5, "coffee": 3.0, "chelsea": 2.5, "rocket": 2.0}
 DOWN = (Image.Resampling.BOX, Image.Resampling.BILINEAR, Image.Resampling.HAMMING, Image.Resampling.BICUBIC,
@@ -196,12 +197,13 @@ def storage() -> None:
         height, width = grid.samples.shape
         samples = GreyImage.from_grey(grid.samples)
         layer = Layer(samples, edges, find_texture("stipple"), "stipple")
-        members = illustration.members(settled(Illustration(576, 576 * height / width, (layer,))))
-        packed = len(archive.pack(members))
+        packed = archive.pack(illustration.members(settled(Illustration(576, 576 * height / width, (layer,)))))
+        members = held(packed)
         print(
             f"{name:10s} {width} x {height} (factor {photo.shape[1] / width:.1f}), error {255 * grid.error:.2f}, "
-            f"{grid.empty_regions} empty regions, {packed / 1e3:.1f} kB (samples {len(members['0.samples']) / 1e3:.1f},"
-            f" {len(edges.edges)} edges {len(members['0.edges']) / 1e3:.1f}), found in {seconds:.1f} s of processor",
+            f"{grid.empty_regions} empty regions, "
+            f"{len(packed) / 1e3:.1f} kB (samples {len(members['samples']) / 1e3:.1f},"
+            f" {len(edges.edges)} edges {len(members['edges']) / 1e3:.1f}), found in {seconds:.1f} s of processor",
             flush=True,
         )
         drawings = {

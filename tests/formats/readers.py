@@ -96,7 +96,7 @@ def _illustration(data: bytes) -> Any:
 
 def _compact(data: bytes) -> Any:
     """A member of a packed illustration, by its first bytes."""
-    from penink_cli.formats import compact, compact_edges, compact_lines
+    from penink_cli.formats import compact, compact_edges, compact_lines, parts
     from tests.fuzz.seeds import EDGES
 
     try:
@@ -106,6 +106,8 @@ def _compact(data: bytes) -> Any:
             return compact_lines.lines_from(data)
         if data.startswith((compact_edges.EDGES, compact_edges.EDGES_1)):
             return compact_edges.edges_from(data)
+        if data.startswith(parts.PARTS):
+            return parts.parts_from(data)
         return compact.text_from(data)
     except PeninkError as error:
         raise error.from_source(SOURCE) from None

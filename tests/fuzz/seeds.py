@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from penink_cli.formats import archive, compact, compact_edges, compact_lines, directions, edge_list, lines, pgm
+from penink_cli.formats import archive, compact, compact_edges, compact_lines, directions, edge_list, lines, parts, pgm
 from penink_cli.ground.model import Directions, EdgeList, GreyImage
 from tests.faults.calls import encoded, strokes_text
 
@@ -71,7 +71,9 @@ def seeds(reader: str) -> Iterator[bytes]:
         yield json.dumps(ILLUSTRATION).encode()
     if reader == "archive":
         yield archive.pack({"illustration.json": b"{}", "0.samples": b"PIs1"})
+        yield archive.pack({"illustration.json": b"{}", "parts": parts.parts_bytes([b"PIs1", b"PIe2"])})
     if reader == "compact":
+        yield parts.parts_bytes([compact.text_bytes(b"a"), b"PIl3"])
         yield compact.samples_bytes(IMAGE)
         yield compact.samples_bytes(IMAGE, EDGES)
         yield compact_edges.edges_bytes(EDGES, 80, 64)

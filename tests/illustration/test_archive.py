@@ -9,9 +9,10 @@ import zipfile
 
 import pytest
 
-from penink_cli.formats import archive
+from penink_cli.formats import archive, parts
 from penink_cli.ground.errors import PeninkError
 from penink_cli.options.inputs import read_illustration
+from tests.conftest import ROOT
 
 
 @pytest.fixture
@@ -52,16 +53,33 @@ def test_pack_twice_gives_the_same_bytes_and_so_does_what_was_unpacked(penink, l
     assert penink("pack", input=again).stdout == packed
 
 
+def test_archives_of_one_file_for_each_member_are_read(penink, loose):
+    old = ROOT / "tests/illustration/of_many_files.penink"
+    assert list(contents(old.read_bytes())) == [
+        "illustration.json",
+        "0.samples",
+        "1.samples",
+        "1.edges",
+        "1.directions",
+    ]
+    for layer in ("1", "2"):
+        options = ("--width", "2in", "--layer", layer)
+        drawn = penink("render", *options, old).stdout
+        assert drawn and drawn == penink("render", *options, loose).stdout
+
+
 def test_the_manifest_wastes_nothing(packed):
     members = contents(packed)
-    assert list(members) == ["illustration.json", "0.samples", "1.samples", "1.edges", "1.directions"]
+    assert list(members) == ["illustration.json", "parts"]
+    assert [part[:3] for part in parts.parts_from(members["parts"])] == [b"PIs", b"PIs", b"PIe", b"PId"]
+    assert len(packed) == sum(map(len, members.values())) + 218  # a ZIP of two names of 22 letters
     manifest = json.loads(members["illustration.json"])
     assert manifest["layers"] == [
-        {"name": "shade", "samples": "0.samples", "texture": "parallel", "seed": 3},
+        {"name": "shade", "samples": "#0", "texture": "parallel", "seed": 3},
         {
-            "samples": "1.samples",
-            "edges": "1.edges",
-            "directions": "1.directions",
+            "samples": "#1",
+            "edges": "#2",
+            "directions": "#3",
             "outline": {"min_strength": 0.25},
         },
     ]
@@ -81,7 +99,8 @@ def test_plates_share_their_edges_and_keep_their_colour_and_turn(penink, loose, 
     ]
     (loose.parent / "plates.illustration.json").write_text(json.dumps(manifest))
     packed = penink("pack", loose.parent / "plates.illustration.json").stdout
-    assert list(contents(packed)) == ["illustration.json", "0.samples", "0.edges", "0.directions", "0.texture"]
+    kept = parts.parts_from(contents(packed)["parts"])
+    assert [part[:3] for part in kept] == [b"PIs", b"PIe", b"PId", b"PIt"]
     (tmp_path / "plates.penink").write_bytes(packed)
     assert penink("pack", tmp_path / "plates.penink").stdout == packed  # turned once, not again
     for name, color in (("1", "#00aeef"), ("magenta", "#EC008c")):
@@ -156,13 +175,30 @@ def hostile(packed: bytes) -> dict[str, tuple[bytes, str]]:
         "no manifest": (zipped(members[1:]), "without illustration.json"),
         "a member gone": (zipped(members[:1]), "is not in the archive"),
         "escaping path": (
-            zipped([("illustration.json", members[0][1].replace(b"0.samples", b"../x.pgm")), *members[1:]]),
+            zipped([("illustration.json", members[0][1].replace(b'"#0"', b'"../x.pgm"')), *members[1:]]),
             "is not in the archive",
         ),
         "absolute path": (
-            zipped([("illustration.json", members[0][1].replace(b"0.samples", b"/etc/passwd")), *members[1:]]),
+            zipped([("illustration.json", members[0][1].replace(b'"#0"', b'"/etc/passwd"')), *members[1:]]),
             "relative",
         ),
+        "a part too far": (
+            zipped([("illustration.json", members[0][1].replace(b'"#0"', b'"#4"')), *members[1:]]),
+            'layer 0: samples "#4": is not among its 4 parts',
+        ),
+        "a part of another kind": (
+            zipped([("illustration.json", members[0][1].replace(b'"#0"', b'"#2"')), *members[1:]]),
+            'layer 0: samples "#2": ',
+        ),
+        "parts cut short": (
+            zipped([members[0], ("parts", members[1][1][:-1])]),
+            'parts "parts": its parts end at byte',
+        ),
+        "parts of parts": (
+            zipped([members[0], ("parts", parts.parts_bytes([members[1][1]]))]),
+            "part 0 is no compact member",
+        ),
+        "too many parts": (zipped([members[0], ("parts", parts.parts_bytes([b"PIs1"] * 321))]), "321 parts; 320 are"),
     }
 
 

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from penink_cli.formats import compact, compact_edges, compact_lines
+from penink_cli.formats import compact, compact_edges, compact_lines, parts
 from penink_cli.formats._compiled import compact as _compact
 from penink_cli.geometry import quantisation, validity
 from penink_cli.ground.errors import FormatError, LimitError, PeninkError
@@ -24,6 +24,8 @@ EDGES = EdgeList(16, 12, CORNERS, np.array([[0, 1], [1, 2], [2, 3], [3, 0], [2, 
 #: The mean by length of each stretch between junctions: the ring and the whisker.
 LEVELLED = EdgeList(16, 12, CORNERS, EDGES.edges, np.array([1, 1, 1, 1, 4]) / 16)
 
+#: Of one byte more than magic, of none, and of more than a number of seven bits says.
+PARTS = [b"PIs1\0", b"PIe2", b"PIt1" + bytes(range(140))]
 
 TOLD = Lines(
     64, 48, np.array([[4, 4], [20.5, 9], [31, 20], [50, 30], [40, 40], [10, 40]]), np.array([0, 3, 5, 6]),
@@ -49,6 +51,7 @@ def by_formula() -> dict[str, tuple[bytes, object]]:
         "PIl2": (b"", TOLD),
         "PIl3": (compact_lines.lines_bytes(TOLD), TOLD),
         "PIt1": (compact.text_bytes(text), text),
+        "PIp1": (parts.parts_bytes(PARTS), PARTS),
     }
 
 
@@ -62,7 +65,9 @@ def test_the_bytes_are_those_of_the_versions_that_are_written():
 @pytest.mark.parametrize("name", VECTORS)
 def test_every_version_is_read(name):
     data, given = bytes.fromhex(VECTORS[name]), by_formula()[name][1]
-    if isinstance(given, GreyImage):
+    if isinstance(given, list):
+        assert parts.parts_from(data) == given
+    elif isinstance(given, GreyImage):
         assert np.array_equal(compact.samples_from(data, 10**6, EDGES).values, given.values)
     elif isinstance(given, EdgeList):
         assert as_set(compact_edges.edges_from(data)) == as_set(given)

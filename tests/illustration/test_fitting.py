@@ -28,7 +28,7 @@ def test_fewer_bytes_are_a_coarser_drawing(rich, tmp_path):
     whole = archive.pack(illustration.members(rich))
     assert packed_within(rich, len(whole), settled) == whole
     sides, sizes = [], []
-    for part in (0.85, 0.6, 0.4):
+    for part in (0.85, 0.6, 0.45):
         packed = packed_within(rich, int(part * len(whole)), settled)
         assert 0.5 * part * len(whole) < len(packed) <= part * len(whole)
         path = tmp_path / "x.penink"
