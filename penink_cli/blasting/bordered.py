@@ -15,11 +15,11 @@ from penink_cli.ground.model import Floats
 
 #: The border is told by places STEP_PT apart, and every place by its neighbours, ROUNDS times: it is known to about
 #: a pixel, of which there are two to four in a point.
-STEP_PT, ROUNDS = 0.25, 2
+STEP_PT, ROUNDS = 0.25, 4
 #: How far a stroke may stray from its place. Rows begin WITHIN of half a painted width from the border and are PITCH
 #: painted widths apart: what lies beyond the stroke, at 2 halves less this, is then no further than 2 - 1.05 = .95
 #: halves from a place of a row, of which .75 are needed.
-TOLERANCE_PT, WITHIN, PITCH = 0.02, 1.05, 0.75
+TOLERANCE_PT, WITHIN, PITCH = 0.03, 1.05, 0.75
 #: The least area too thin for strokes along its border that is filled, square points: less is roughness of the border.
 LEAST_THIN_PT2 = 0.3
 
