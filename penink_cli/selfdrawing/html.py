@@ -23,7 +23,7 @@ SOURCES = (
 )  # fmt: skip
 #: What stands in for sources that are not needed, where others call them all the same.
 INSTEAD = {
-    "telling.js": "const tellingOf = () => [], tellingOn = () => [];",
+    "telling.js": "const tellingOf = () => [], tellingOn = () => [], lighten = () => {};",
     "outline.js": "const outlinesOf = () => [];",
 }
 

@@ -54,6 +54,7 @@ class Page:
         self.write, self.read = os.fdopen(in_write, "wb"), os.fdopen(out_read, "rb")
         self.buffer, self.number = b"", 0
         self.console: list[str] = []
+        self.thrown: list[str] = []  # of the console, errors that no code of the page has caught
         self.requests: list[str] = []
         targets = self.call("Target.getTargets")["targetInfos"]
         target = next(t["targetId"] for t in targets if t["type"] == "page")
@@ -91,6 +92,7 @@ class Page:
                 self.console.append(str(params["args"]))
             case "Runtime.exceptionThrown":
                 self.console.append(str(params["exceptionDetails"]))
+                self.thrown.append(self.console[-1])
             case "Log.entryAdded":
                 self.console.append(params["entry"]["text"])
             case "Network.requestWillBeSent":
@@ -114,7 +116,7 @@ class Page:
     def until(self, expression: str) -> None:
         """Wait, in the page, for what the expression says."""
         while not self._asked(f"new Promise(done => requestAnimationFrame(() => done(!!({expression}))))"):
-            pass
+            assert not self.thrown, self.thrown
 
     def screenshot(self) -> np.ndarray:
         data = base64.b64decode(self.call("Page.captureScreenshot", format="png")["data"])
