@@ -108,17 +108,15 @@ def test_strokes_end_at_strong_edges() -> None:
 
 
 def test_black_is_black_and_no_net() -> None:
-    """Where black begins the first layer closes up alone: full tone leaves no paper, nearly full tone slivers of it."""
+    """Where black begins the first layer closes up alone; what is as good as black is filled, and leaves no paper."""
     layers = find_texture("form").layers
     tone = np.full((30, 30), 0.97)
     first, second, black = shares(tone, tone, layers)
     assert (first == BLACK).all() and (second == 0).all() and (black == 0).all()
-    for wanted, least, most in ((1.0, 0.0, 0.015), (0.95, 0.02, 0.08)):
+    for wanted, least, most in ((1.0, 0.0, 0.015), (0.95, 0.0, 0.015), (0.91, 0.05, 0.13)):
         strokes = blast(np.full((16, 16), wanted), 144, 144, None, find_texture("form"), directions=field(waves))
         paper = 1 - measures.rendered(strokes, 600)[60:-60, 60:-60].mean()
-        assert least <= paper < most
-        if wanted < 1:  # what is quite black is filled in rows
-            assert off_angle(strokes, waves).mean() < 6
+        assert least <= paper < most, (wanted, paper)
 
 
 def test_no_layer_is_drawn_where_it_covers_nothing() -> None:
