@@ -12,10 +12,10 @@ from penink_cli.ground.streams import writing
 from penink_cli.options.common import (
     LENGTH,
     POSITIVE,
-    DeviceDpi,
     Finite,
     edges_option,
     filter_options,
+    printer_option,
     processors,
     reporter,
     threads_option,
@@ -62,14 +62,7 @@ if TYPE_CHECKING:
     metavar="N",
     help="A hand. The threshold rule knows but one.",
 )
-@click.option(
-    "--device-dpi",
-    type=DeviceDpi(),
-    default="600",
-    show_default=True,
-    metavar="N|none",
-    help="Resolution of the printer, which paints every dot that a stroke touches; none for plotters and screens.",
-)
+@printer_option()
 @click.option(
     "--rule",
     type=click.Choice(list(RULES)),

@@ -8,7 +8,7 @@ from typing import Any
 import click
 
 from penink_cli.ground.streams import writing
-from penink_cli.options.common import LENGTH, POSITIVE, DeviceDpi, Finite, filter_options, reporter, verbose_option
+from penink_cli.options.common import LENGTH, POSITIVE, Finite, filter_options, printer_option, reporter, verbose_option
 from penink_cli.options.inputs import read_lines
 
 
@@ -43,14 +43,7 @@ from penink_cli.options.inputs import read_lines
 @click.option(
     "--loose", type=LENGTH, metavar="LENGTH", help="Each line twice, straying by this, as in a sketch: 0.8pt."
 )
-@click.option(
-    "--device-dpi",
-    type=DeviceDpi(),
-    default="600",
-    show_default=True,
-    metavar="N|none",
-    help="Resolution of the printer: screens draw the lines as wide as it paints them.",
-)
+@printer_option("Resolution of the printer: screens draw the lines as wide as it paints them.")
 @verbose_option
 def lines(
     file: str | None,

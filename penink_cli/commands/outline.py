@@ -8,7 +8,7 @@ import click
 
 from penink_cli.ground.errors import in_quotes
 from penink_cli.ground.streams import writing
-from penink_cli.options.common import LENGTH, DeviceDpi, Finite, filter_options
+from penink_cli.options.common import LENGTH, Finite, filter_options, printer_option
 from penink_cli.options.inputs import read_edges
 
 
@@ -40,14 +40,7 @@ class Point(click.ParamType):
     show_default=True,
     help="Width of a hand's strokes, which swell and thin a little.",
 )
-@click.option(
-    "--device-dpi",
-    type=DeviceDpi(),
-    default="600",
-    show_default=True,
-    metavar="N|none",
-    help="Resolution of the printer that the hatching beside them is for, as blast has it.",
-)
+@printer_option("Resolution of the printer that the hatching beside them is for, as blast has it.")
 @click.option(
     "--min-strength",
     type=Finite(0, 1),

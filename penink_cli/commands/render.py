@@ -9,7 +9,7 @@ import click
 
 from penink_cli.ground.errors import ParameterError, printable
 from penink_cli.ground.streams import writing
-from penink_cli.options.common import LENGTH, POSITIVE, DeviceDpi, filter_options, processors, threads_option
+from penink_cli.options.common import LENGTH, POSITIVE, filter_options, printer_option, processors, threads_option
 from penink_cli.options.inputs import read_illustration
 from penink_cli.options.sheet import check_sheet
 
@@ -26,14 +26,7 @@ if TYPE_CHECKING:
     type=LENGTH,
     help="Draw everything with one pen of this width.  [default: the layers', finer on prints under 4 in]",
 )
-@click.option(
-    "--device-dpi",
-    type=DeviceDpi(),
-    default="600",
-    show_default=True,
-    metavar="N|none",
-    help="Resolution of the printer, which paints every dot that a stroke touches; none for plotters and screens.",
-)
+@printer_option()
 @click.option(
     "--seed",
     type=click.IntRange(0, 2**62),

@@ -220,6 +220,14 @@ def output_options(function: F) -> F:
     return function
 
 
+def printer_option(
+    says: str = "Resolution of the printer, which paints every dot that a stroke touches; "
+    "none for plotters and screens.",
+) -> Callable[[F], F]:
+    """--device-dpi of what lays strokes for a printer."""
+    return click.option("--device-dpi", type=DeviceDpi(), default="600", show_default=True, metavar="N|none", help=says)
+
+
 def edges_option(required: bool) -> Callable[[F], F]:
     """-e/--edges FILE: the discontinuity edges of the image."""
     return click.option(

@@ -91,6 +91,64 @@ cdef inline double _stops(int guess, int off, int most, bint below, double middl
     return _between(guess + off, guess + off, middle, spread) / _between(guess + off, guess + most, middle, spread)
 
 
+cdef struct Near:
+    int west, north, north_west, north_east, north_north, west_west
+    int median  # of west, north and their plane
+    int parted  # 0: no neighbour is behind an edge, 1: some, 2: west and north, 3: all that count
+
+
+cdef inline Near _near(int[:, ::1] values, Py_ssize_t i, Py_ssize_t j, int maxval, int hidden) noexcept nogil:
+    """The neighbours of sample (i, j) that come before it; those that are not there, or hidden, as the others have it.
+
+    hidden: bits of those that an edge parts it from, as `cuts.mark` has them.
+    """
+    cdef Near near
+    cdef int around = 0
+    cdef int weight = 0
+    cdef int most, least
+    near.west = values[i, j - 1] if j else (values[i - 1, j] if i else maxval)
+    near.north = values[i - 1, j] if i else near.west
+    near.north_west = values[i - 1, j - 1] if i and j else near.north
+    near.north_east = values[i - 1, j + 1] if i and j + 1 < values.shape[1] else near.north
+    near.north_north = values[i - 2, j] if i > 1 else near.north
+    near.west_west = values[i, j - 2] if j > 1 else near.west
+    near.parted = 0
+    if i == 0 and hidden & 1:
+        hidden |= 2 | 4 | 8 | 32
+    elif j == 0 and hidden & 2:
+        hidden |= 1 | 4 | 16
+    if hidden:
+        if not hidden & 1:
+            around += 6 * near.west
+            weight += 6
+        if not hidden & 2:
+            around += 6 * near.north
+            weight += 6
+        if not hidden & 4:
+            around += 2 * near.north_west
+            weight += 2
+        if not hidden & 8:
+            around += 3 * near.north_east
+            weight += 3
+        if weight:
+            around = (2 * around + weight) // (2 * weight)
+            near.west = around if hidden & 1 else near.west
+            near.north = around if hidden & 2 else near.north
+            near.north_west = around if hidden & 4 else near.north_west
+            near.north_east = around if hidden & 8 else near.north_east
+            near.west_west = around if hidden & 16 else near.west_west
+            near.north_north = around if hidden & 32 else near.north_north
+        near.parted = 3 if weight == 0 else 2 if hidden & 3 == 3 else 1
+    most, least = max(near.west, near.north), min(near.west, near.north)
+    if near.north_west >= most:
+        near.median = least
+    elif near.north_west <= least:
+        near.median = most
+    else:
+        near.median = near.west + near.north - near.north_west
+    return near
+
+
 cdef class Coder:
     """Writes numbers into bytes, or reads them back.
 
@@ -288,56 +346,18 @@ cdef class Coder:
         while (maxval >> shift) > 63:
             shift += 1
         cdef int north, west, north_west, north_east, north_north, west_west, guess, median, level, rough, before, value
-        cdef int around, hidden, weight
-        cdef int count = 0
+        cdef int around, count
+        cdef Near near
         cdef int[:, ::1] errors = np.zeros((2, w + 2), np.int32)  # absolute, of this row and the last
         for i in range(h):
             for j in range(w):
                 if self._exhausted():
                     return
-                west = values[i, j - 1] if j else (values[i - 1, j] if i else maxval)
-                north = values[i - 1, j] if i else west
-                north_west = values[i - 1, j - 1] if i and j else north
-                north_east = values[i - 1, j + 1] if i and j + 1 < w else north
-                north_north = values[i - 2, j] if i > 1 else north
-                west_west = values[i, j - 2] if j > 1 else west
-                if cuts is not None:
-                    hidden = cuts[i, j]
-                    count = 0
-                    if i == 0 and hidden & 1:
-                        hidden |= 2 | 4 | 8 | 32
-                    elif j == 0 and hidden & 2:
-                        hidden |= 1 | 4 | 16
-                    if hidden:
-                        around = weight = 0
-                        if not hidden & 1:
-                            around += 6 * west
-                            weight += 6
-                        if not hidden & 2:
-                            around += 6 * north
-                            weight += 6
-                        if not hidden & 4:
-                            around += 2 * north_west
-                            weight += 2
-                        if not hidden & 8:
-                            around += 3 * north_east
-                            weight += 3
-                        if weight:
-                            around = (2 * around + weight) // (2 * weight)
-                            west = around if hidden & 1 else west
-                            north = around if hidden & 2 else north
-                            north_west = around if hidden & 4 else north_west
-                            north_east = around if hidden & 8 else north_east
-                            west_west = around if hidden & 16 else west_west
-                            north_north = around if hidden & 32 else north_north
-                        count = 3 if weight == 0 else 2 if hidden & 3 == 3 else 1
-                # Median of west, north and their plane; and the mean of what slopes and neighbours say.
-                if north_west >= max(west, north):
-                    median = min(west, north)
-                elif north_west <= min(west, north):
-                    median = max(west, north)
-                else:
-                    median = west + north - north_west
+                near = _near(values, i, j, maxval, cuts[i, j] if cuts is not None else 0)
+                west, north, north_west = near.west, near.north, near.north_west
+                north_east, north_north, west_west = near.north_east, near.north_north, near.west_west
+                median, count = near.median, near.parted
+                # The mean of what slopes and neighbours say.
                 around = 6 * (west + north) + 2 * (north_east - north_west)
                 around += 2 * (west - west_west) + 2 * (north - north_north)
                 guess = (around + 4 * median + 8) >> 4
@@ -378,7 +398,8 @@ cdef class Coder:
         cuts: as of `samples`. Reading stops where the bytes overrun.
         """
         cdef Py_ssize_t i, j, here
-        cdef int k, hidden, count, around, weight, north, west, north_west, north_east, north_north, west_west
+        cdef Near near
+        cdef int k, count, around, north, west, north_west, north_east, north_north, west_west
         cdef int median, rough, before, level, guess, value, off, most
         cdef bint below
         cdef double middle, plain, fit, energy, seen, one, other
@@ -401,47 +422,10 @@ cdef class Coder:
             for j in range(w):
                 if self._exhausted():
                     return
-                west = values[i, j - 1] if j else (values[i - 1, j] if i else maxval)
-                north = values[i - 1, j] if i else west
-                north_west = values[i - 1, j - 1] if i and j else north
-                north_east = values[i - 1, j + 1] if i and j + 1 < w else north
-                north_north = values[i - 2, j] if i > 1 else north
-                west_west = values[i, j - 2] if j > 1 else west
-                hidden = cuts[i, j]
-                count = 0
-                if i == 0 and hidden & 1:
-                    hidden |= 2 | 4 | 8 | 32
-                elif j == 0 and hidden & 2:
-                    hidden |= 1 | 4 | 16
-                if hidden:
-                    around = weight = 0
-                    if not hidden & 1:
-                        around += 6 * west
-                        weight += 6
-                    if not hidden & 2:
-                        around += 6 * north
-                        weight += 6
-                    if not hidden & 4:
-                        around += 2 * north_west
-                        weight += 2
-                    if not hidden & 8:
-                        around += 3 * north_east
-                        weight += 3
-                    if weight:
-                        around = (2 * around + weight) // (2 * weight)
-                        west = around if hidden & 1 else west
-                        north = around if hidden & 2 else north
-                        north_west = around if hidden & 4 else north_west
-                        north_east = around if hidden & 8 else north_east
-                        west_west = around if hidden & 16 else west_west
-                        north_north = around if hidden & 32 else north_north
-                    count = 3 if weight == 0 else 2 if hidden & 3 == 3 else 1
-                if north_west >= max(west, north):
-                    median = min(west, north)
-                elif north_west <= min(west, north):
-                    median = max(west, north)
-                else:
-                    median = west + north - north_west
+                near = _near(values, i, j, maxval, cuts[i, j])
+                west, north, north_west = near.west, near.north, near.north_west
+                north_east, north_north, west_west = near.north_east, near.north_north, near.west_west
+                median, count = near.median, near.parted
                 around = 6 * (west + north) + 2 * (north_east - north_west)
                 around += 2 * (west - west_west) + 2 * (north - north_north) + 4 * median
                 plain = around / 16.0
