@@ -131,3 +131,10 @@ def test_the_map_leads_to_what_is_there() -> None:
                 if "NAME" not in name and not any(any(place.glob(name)) for place in places):
                     lost.append(name)
         assert not lost, f"{guide}: {', '.join(lost)}"
+
+
+def test_the_map_lists_the_rooms_from_the_ground_up() -> None:
+    rows = re.findall(r"^\| `(\w+)` \|", (HOUSE / "README.md").read_text("utf-8"), re.MULTILINE)
+    floors = [FLOOR[room] for room in rows]
+    assert floors == sorted(floors)
+    assert {room for room in FLOOR if (HOUSE / room).is_dir()} == set(rows)

@@ -1,7 +1,7 @@
 """Order strokes for a pen: short ways between them, ends that meet joined.
 
-The tour goes from the sheet's top-left corner always to the nearest end (`_tree`), and is then
-shortened by 2-opt and Or-opt (`_improve`). Every stroke may be drawn from either end.
+The tour goes from the sheet's top-left corner always to the nearest end (kernel `tree`), and is then
+shortened by 2-opt and Or-opt (kernel `improve`). Every stroke may be drawn from either end.
 """
 
 from __future__ import annotations
