@@ -41,6 +41,7 @@ def detect_edges(
     high: float | None = None,
     tolerance: float = TOLERANCE,
     min_length: float = MIN_LENGTH,
+    seen_at: float | None = None,
     report: Callable[[str], None] = lambda line: None,
 ) -> EdgeList:
     """Find the discontinuity edges of a photo.
@@ -52,6 +53,8 @@ def detect_edges(
         high: grey step that each edge reaches somewhere.
         tolerance: how far segments may stray from the edge found, pixels.
         min_length: shortest chain that is kept, pixels.
+        seen_at: the width on paper, points, of the drawing that the edges are for, None for any: corners and junctions
+            are settled only where it shows them.
         report: is told, in a line, what was chosen by the photo.
 
     """
@@ -79,7 +82,7 @@ def detect_edges(
     lens = float(np.sqrt(max(_LEAST_LENS**2, blur * blur - sigma * sigma - _OWN)))
 
     def settle(arrangement: Planar, step: Floats) -> None:
-        settle_junctions(arrangement, grey, step, lens, noise, blur)
+        settle_junctions(arrangement, grey, step, lens, noise, blur, seen_at)
 
     edges, slopes = _arrange(points, chains, join_ends(points, chains, blur), tolerance, steepness, settle)
     measured = strengths(grey, edges, lens)

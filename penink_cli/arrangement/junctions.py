@@ -31,6 +31,7 @@ from penink_cli.arrangement._compiled.planar import Planar
 from penink_cli.arrangement._compiled.regions import FINENESS
 from penink_cli.arrangement._compiled.settling import Settler
 from penink_cli.arrangement.planar import UNIT
+from penink_cli.geometry.trails import hanging_together
 from penink_cli.ground import exact
 from penink_cli.ground import threads as threading
 from penink_cli.ground.model import Floats
@@ -47,11 +48,15 @@ _FEW, _PIXELS_A_SITE = 400, 6000  # places looked at, the strongest first: a pho
 _BESIDE = 1.5  # times how far blur reaches: what is beside a place is looked at with it
 _AROUND = 3  # pixels around a place that are looked at; around an open end as many as it may be joined across
 _TOGETHER = 8  # places that a thread takes at once
+# What a drawing shows of edges: strokes end at them, or follow them, where the grey steps by SHOWN on and they hang
+# together for SHOWN_PT on paper.
+_SHOWN, _SHOWN_PT = 0.2, 30.0
 
 
 def settle_junctions(
-    planar: Planar, grey: npt.NDArray[np.floating], step: Floats, lens: float, noise: float, blur: float
-) -> None:
+    planar: Planar, grey: npt.NDArray[np.floating], step: Floats, lens: float, noise: float, blur: float,
+    seen_at: float | None = None,
+) -> None:  # fmt: skip
     """Improve the corners and junctions of an arrangement, which stays one.
 
     Args:
@@ -61,6 +66,8 @@ def settle_junctions(
         lens: standard deviation (pixels) of the photo's blur beyond its pixels' area.
         noise: standard deviation of the photo's noise, 0 … 1.
         blur: that (pixels) of the whole blur that the edges were found through.
+        seen_at: the width on paper, points, of the drawing that is to show it: of places that it does not show none is
+            improved. None for all.
 
     """
     height, width = grey.shape
@@ -86,6 +93,9 @@ def settle_junctions(
     again: set[int] = set()  # vertices moved by a site that is not theirs
     for turn in range(_PASSES):
         sites = _sites(planar, step, near, width, height)
+        if turn == 0 and seen_at is not None:
+            shown = _shown_vertices(planar, grey, 2.0 * blur, _SHOWN_PT * width / seen_at)
+            sites = [site for site in sites if shown[site[0]].any()]
         if turn:
             sites = [site for site in sites if again.intersection(site[0].tolist())]
         again = set()
@@ -124,9 +134,7 @@ def _waves(sites: list[tuple[Site, list[int]]]) -> list[list[Site]]:
 
 def _sites(planar: Planar, step: Floats, near: float, width: int, height: int) -> list[Site]:
     """Corners, junctions and open ends beside something, those together that are near to one another."""
-    at = np.asarray(planar.vertices) * UNIT
-    ends = np.asarray(planar.ends)
-    ends = ends[np.asarray(planar.live)[: len(ends)].astype(bool)]
+    at, ends = np.asarray(planar.vertices) * UNIT, _ends(planar)
     inside = np.asarray(((at > 0) & (at < (width, height))).all(axis=1))
     special = _special(planar, at, ends, near)
     special = special[inside[special]]
@@ -156,6 +164,38 @@ def _sites(planar: Planar, step: Floats, near: float, width: int, height: int) -
         wider = np.concatenate([core, np.array(sorted(beside[owner[core[0]]]), np.int32)])
         sites.append((core, wider, int(near) if (degree[core] == 1).any() else _AROUND))
     return sites
+
+
+def _shown_vertices(
+    planar: Planar, grey: npt.NDArray[np.floating], beside: float, least: float
+) -> npt.NDArray[np.bool_]:
+    """Which of the vertices (n,) are on edges of a strong step that hang together for so many pixels.
+
+    beside: how far from an edge the grey of its sides is looked up, pixels. At vertices themselves slopes tell little.
+    """
+    at, ends = np.asarray(planar.vertices) * UNIT, _ends(planar)
+    a, b = at[ends[:, 0]], at[ends[:, 1]]
+    along = b - a
+    length = exact.length(along)
+    off = np.column_stack([-along[:, 1], along[:, 0]]) * (beside / np.maximum(length, 1e-9))[:, None]
+    last = np.array(grey.shape[::-1]) - 1
+    step = np.zeros(len(ends))
+    for part in (0.25, 0.5, 0.75):
+        middle = a + part * along
+        right, left = (np.clip((middle + side * off).astype(np.int64), 0, last) for side in (1, -1))
+        step += np.abs(grey[right[:, 1], right[:, 0]] - grey[left[:, 1], left[:, 0]]) / 3
+    strong = step >= _SHOWN
+    group = hanging_together(ends[strong], len(at))
+    whole = np.bincount(group, length[strong], len(at))
+    result = np.zeros(len(at), np.bool_)
+    result[ends[strong][whole[group] >= least]] = True
+    return result
+
+
+def _ends(planar: Planar) -> Ints32:
+    """The ends (m, 2) of the edges that there are."""
+    ends = np.asarray(planar.ends)
+    return ends[np.asarray(planar.live)[: len(ends)].astype(bool)]
 
 
 def _special(planar: Planar, at: Floats, ends: Ints32, near: float) -> Ints32:

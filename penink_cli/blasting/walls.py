@@ -14,6 +14,7 @@ from penink_cli.blasting import curves
 from penink_cli.blasting._compiled import crossings as _crossings
 from penink_cli.blasting.sheet import STEP, Sheet
 from penink_cli.geometry import edge_index
+from penink_cli.geometry.trails import hanging_together
 from penink_cli.ground.model import EdgeList, Floats, Ints
 
 CELL_PT = 6.0
@@ -78,23 +79,6 @@ def strong_edges(edges: EdgeList, sheet: Sheet) -> Floats:
     group = hanging_together(edges.edges[kept], len(vertices))
     kept = kept[np.bincount(group, length[kept], len(vertices))[group] >= SHORTEST_WALL_PT]
     return np.concatenate([a[kept], b[kept]], axis=1)
-
-
-def hanging_together(edges: Ints, count: int) -> Ints:
-    """(m,) for each edge (m, 2) between count vertices the least vertex that it hangs together with.
-
-    >>> hanging_together(np.array([[4, 1], [2, 3], [1, 5]]), 6).tolist()
-    [1, 2, 1]
-    """
-    label = np.arange(count)
-    while True:
-        ends = label[edges]
-        if (ends[:, 0] == ends[:, 1]).all():
-            return np.asarray(ends[:, 0], np.int64)
-        # the greater of two roots goes under the lesser, then every vertex straight under its root
-        np.minimum.at(label, ends.max(axis=1), ends.min(axis=1))
-        while (label[label] != label).any():
-            label = label[label]
 
 
 def margin(pen_pt: float, width_pt: float, height_pt: float) -> float:

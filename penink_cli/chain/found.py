@@ -28,7 +28,10 @@ def grey(job: Job, photo: list[str], shape: tuple[int, ...]) -> tuple[str, tuple
 
 def edges(job: Job, grey: str, size: tuple[int, int]) -> str:
     """The edges of the grey; for an archive those that are worth their bytes, and those that will be outlined."""
-    found = job.run("detect-edges", [*job.words("edges", "detect-edges"), grey], "e.json")
+    told = job.words("edges", "detect-edges")
+    if not of_illustrations(job.ending) and not job.enlarged(size):
+        told += ["--seen-at", repr(job.width)]  # the sizes of an illustration are not known, and all edges enlarge
+    found = job.run("detect-edges", [*told, grey], "e.json")
     if job.ending != ARCHIVE:
         return found
     worth = RICH_WORTH if "max_bytes" in job.given else WORTH

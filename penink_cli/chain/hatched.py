@@ -60,11 +60,11 @@ def _over(job: Job, size: tuple[int, int], edges: str, lines: str | None) -> lis
 
 def _enlarged(job: Job, plate: Plate, edges: str) -> str:
     """The grey that is blasted: reconstructed where the photo has fewer pixels than the drawing can show."""
+    if not job.enlarged(plate.size):
+        return plate.grey
     from penink_cli.illustration.drawing import grey_size
 
     across, down = grey_size(job.width, job.aspect)
-    if plate.size[0] >= across:
-        return plate.grey
     samples = job.run("extract-samples", ["-e", edges, plate.grey], plate.named("samples.pgm"))
     enlarge = ["-e", edges, "--size", f"{across}x{down}", "--soften", samples]
     return job.run("enlarge", enlarge, plate.named("enlarged.pgm"))

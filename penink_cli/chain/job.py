@@ -53,6 +53,12 @@ class Job:
         """Words for filters that leave out what the drawing of an archive would not show."""
         return ["--seen-at", repr(self.width)] if self.ending == ARCHIVE else []
 
+    def enlarged(self, size: tuple[int, int]) -> bool:
+        """Whether a grey of that width and height has fewer pixels than the drawing can show, and is reconstructed."""
+        from penink_cli.illustration.drawing import grey_size
+
+        return size[0] < grey_size(self.width, self.aspect)[0]
+
     @property
     def texture(self) -> Texture:
         """What is hatched with."""

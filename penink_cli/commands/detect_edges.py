@@ -7,7 +7,7 @@ from typing import Any
 import click
 
 from penink_cli.ground.streams import writing
-from penink_cli.options.common import POSITIVE, Finite, filter_options, reporter, verbose_option
+from penink_cli.options.common import LENGTH, POSITIVE, Finite, filter_options, reporter, verbose_option
 from penink_cli.options.inputs import photo_options, read_photo
 
 STEP = Finite(most=1, above=0)
@@ -23,6 +23,9 @@ STEP = Finite(most=1, above=0)
 @click.option("--high", type=STEP, metavar="GREY", help="Grey step an edge reaches somewhere.  [default: by the photo]")
 @click.option("--tolerance", type=POSITIVE, help="How far segments may stray from the edge, pixels.  [default: 0.3]")
 @click.option("--min-length", type=Finite(least=0), help="Shortest edge that is kept, pixels.  [default: 6]")
+@click.option(
+    "--seen-at", type=LENGTH, help="Settle corners and junctions only where a drawing of this width shows them."
+)
 @verbose_option
 def detect_edges(
     file: str | None, output: str | None, max_pixels: int, quiet: bool, verbose: bool, **choices: Any

@@ -64,3 +64,20 @@ def trails(points: npt.NDArray[np.floating] | Ints, ends: Ints, least_cosine: fl
             while (left := sum(not used[edge] for _, edge in around[start])) and (rings or left % 2):
                 found.append(walk(start))
     return found
+
+
+def hanging_together(edges: npt.NDArray[np.integer], count: int) -> Ints:
+    """(m,) for each edge (m, 2) between count vertices the least vertex that it hangs together with.
+
+    >>> hanging_together(np.array([[4, 1], [2, 3], [1, 5]]), 6).tolist()
+    [1, 2, 1]
+    """
+    label = np.arange(count)
+    while True:
+        ends = label[edges]
+        if (ends[:, 0] == ends[:, 1]).all():
+            return np.asarray(ends[:, 0], np.int64)
+        # the greater of two roots goes under the lesser, then every vertex straight under its root
+        np.minimum.at(label, ends.max(axis=1), ends.min(axis=1))
+        while (label[label] != label).any():
+            label = label[label]

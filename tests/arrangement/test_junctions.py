@@ -134,3 +134,20 @@ def test_the_result_does_not_depend_on_threads(monkeypatch):
         edges = detect_edges(photo)
         found.append((edges.vertices.tobytes(), edges.edges.tobytes()))
     assert found[0] == found[1]
+
+
+def test_only_what_a_drawing_shows_is_settled(monkeypatch):
+    """Strong edges that go on for half an inch are; weak ones stay as found, and so do short ones."""
+    strong = Scene(100, [polygon([(20, 50), (80, 28.2), (80, 71.8)], (0.8, 0, 0))]).photo(1.0, 2, 3)
+    weak = 0.5 + (strong - 0.5) * 0.5
+
+    def found(photo, **told):
+        edges = detect_edges(photo, low=0.05, high=0.1, **told)
+        return edges.vertices.tobytes(), edges.edges.tobytes()
+
+    whole = {"strong": found(strong), "weak": found(weak)}
+    assert found(strong, seen_at=72.0) == whole["strong"]
+    left, short = found(weak, seen_at=72.0), found(strong, seen_at=3.0)
+    monkeypatch.setattr("penink_cli.arrangement.detection.settle_junctions", lambda *told: None)
+    assert left == found(weak) != whole["weak"]
+    assert short == found(strong) != whole["strong"]
