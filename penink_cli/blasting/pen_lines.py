@@ -112,10 +112,11 @@ def cut(lines: LevelLines, spacing: Floats, stroke_pt: tuple[float, float], shor
     high = lines.points.max(axis=0) if len(lines.points) else np.zeros(2)
     columns, rows = (int(side / ENDS_CELL_PT) + 1 for side in high - low)
     line, span, joined = np.empty(room, np.int64), np.empty((room, 2)), np.empty((room, 2), np.uint8)
+    head, link, tips = np.full((rows, columns), -1, np.int32), np.empty(room, np.int32), np.empty((room, 2))
+    ends = _lines.Ends(head, link, tips, ENDS_CELL_PT, float(low[0]), float(low[1]))
     n = _lines.chop(
-        lines.points, lines.first, length, goes_on, np.ascontiguousarray(spacing), shortest_pt, *stroke_pt,
-        ENDS_CELL_PT, float(low[0]), float(low[1]), columns, rows, seed,
-        np.full(columns * rows, -1, np.int32), np.empty(room, np.int32), np.empty((room, 2)), line, span, joined,
+        _lines.Lines(lines.points, lines.first, length), ends, goes_on, np.ascontiguousarray(spacing), shortest_pt,
+        *stroke_pt, seed, line, span, joined,
     )  # fmt: skip
     return Parts(line[:n], span[:n], joined[:n] > 0)
 
@@ -126,11 +127,11 @@ def drawn(lines: LevelLines, parts: Parts, hand: Floats) -> tuple[Floats, Ints]:
     hand: (n, 3) how far each stroke is off its line: all of it, the same more at its end and less at its start, and its
     bow, points.
     """
-    length = lengths(lines)
+    along = _lines.Lines(lines.points, lines.first, lengths(lines))
     span, hand = np.ascontiguousarray(parts.span), np.ascontiguousarray(hand)
     count = np.empty(len(parts.line), np.int64)
-    _lines.cubics(lines.points, lines.first, length, parts.line, span, hand, TOLERANCE_PT, count)
+    _lines.cubics(along, parts.line, span, hand, TOLERANCE_PT, count)
     first = curves.starts(3 * count + 1)
     points = np.empty((first[-1], 2))
-    _lines.draw(lines.points, lines.first, length, parts.line, span, hand, count, first, points)
+    _lines.draw(along, parts.line, span, hand, count, first, points)
     return points, first

@@ -56,6 +56,17 @@ ROUNDS = 8
 LIGHT = 0.1
 #: The least angle between lines and the diagonal, degrees; see `heading`.
 OFF_DIAGONAL = 1.5
+#: What the kernel is told of these, in columns and rows.
+TERMS = _sweep.Terms(
+    shortest=round(SHORTEST_PT / COLUMN_PT),
+    least=round(STROKE_PT[0] / COLUMN_PT),
+    most=round(STROKE_PT[1] / COLUMN_PT),
+    steepest=STEEPEST * COLUMN_PT / ROW_PT,
+    memory=MEMORY,
+    drift=DRIFT,
+    heal=HEAL,
+    reach=round(HEAL_PT / COLUMN_PT),
+)
 #: The hand's variation: of a stroke's place in parts of the spacing, of its bow, points.
 WAVER = 0.07
 BOW_PT = 0.3
@@ -134,17 +145,17 @@ def hatch(
     room = int(total / (SHORTEST_PT / COLUMN_PT)) + columns + 16
     leaves = 1 << max(1, (columns - 1).bit_length())
     strokes, spans = np.empty((room, 3)), np.empty((room, 5), np.int64)
-    n = _sweep.lay(
-        phase, np.full(columns, float(rng.random())), np.zeros(columns, np.int64), np.empty(2 * leaves),
-        np.full(columns, -1e9), np.zeros(columns, np.uint8), key,
-        round(SHORTEST_PT / COLUMN_PT), round(STROKE_PT[0] / COLUMN_PT), round(STROKE_PT[1] / COLUMN_PT),
-        STEEPEST * COLUMN_PT / ROW_PT, MEMORY, DRIFT, HEAL, round(HEAL_PT / COLUMN_PT), strokes, spans,
+    front = _sweep.Front(
+        phase, np.full(columns, float(rng.random())), np.empty(2 * leaves), np.zeros(columns, np.int64),
+        np.full(columns, -1e9), np.zeros(columns, np.uint8),
     )  # fmt: skip
+    n = _sweep.lay(front, TERMS, key, strokes, spans)
     strokes, spans = strokes[:n], spans[:n]
     length = int((spans[:, 1] - spans[:, 0] + 1).sum())
-    begin, lists, place = np.empty(columns + 1, np.int64), np.empty(length, np.int64), np.empty(length, np.int64)
-    _sweep.crossings(strokes, spans, n, begin, lists, place)
-    _sweep.relax(phase, strokes, spans, n, begin, lists, place, ROUNDS, RELAXED * COLUMN_PT / ROW_PT)
+    crossed = np.empty(columns + 1, np.int64), np.empty(length, np.int64), np.empty(length, np.int64)
+    laid = _sweep.Laid(strokes, spans, *crossed)
+    laid.find()
+    laid.relax(phase, ROUNDS, RELAXED * COLUMN_PT / ROW_PT)
 
     # from columns and rows to points, the hand's variation, and a small gap where one stroke follows another
     at_column, at_row = np.floor(strokes[:, 0]).astype(np.int64), np.floor(strokes[:, 1]).astype(np.int64)

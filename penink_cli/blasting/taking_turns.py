@@ -10,8 +10,6 @@ This module alone imports the compiled kernel `taking_turns`.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 import numpy.typing as npt
 
@@ -25,13 +23,8 @@ Mask = npt.NDArray[np.bool_]
 LEVELS = 3
 #: Samples of a piece; the weight of the next piece on the same line beside that of one neighbour; rounds of settling.
 PIECE, ALIKE, ROUNDS = 12, 16.0, 12
-#: The search for the next line across, in parts of the distance of lines: where it begins, its step, how many steps
-#: there are, and the width of the cells of its grid.
-NEAREST, STEP, PROBES, CELL = 0.5, 0.14, 11, 0.4
-#: The bounds within which the distance of two lines is believed, in parts of the usual one.
-LEAST, MOST = 0.4, 2.0
-#: The least cosine of the angle between two lines that count as beside each other.
-ALIKE_COSINE = 0.8
+#: The width of the cells of the grid in which neighbours are found, in parts of the distance of lines.
+CELL = 0.4
 
 
 def levels(points: Floats, first: Ints, normals: Floats, light: Floats, spacing: float) -> npt.NDArray[np.int8]:
@@ -57,63 +50,30 @@ def levels(points: Floats, first: Ints, normals: Floats, light: Floats, spacing:
     return out[piece]
 
 
-@dataclass(frozen=True, eq=False)
-class Neighbours:
-    """Where lines are, so that those beside them are found.
-
-    points: (p, 2) their samples, normals: (p, 2) of the lines there, which: (p,) the line of each. there: (rows,
-    columns) a sample in each cell that a line passes, -1 for none; cells are so wide, from left, top.
-    """
-
-    points: Floats
-    normals: Floats
-    which: npt.NDArray[np.int32]
-    there: npt.NDArray[np.int32]
-    left: float
-    top: float
-    cell: float
-    spacing: float
-
-    @classmethod
-    def of(cls, points: Floats, normals: Floats, which: Ints, some: Ints, spacing: float) -> Neighbours:
-        """Of those samples alone that are among `some`."""
-        cell = CELL * spacing
-        x, y = points[:, 0], points[:, 1]
-        left, top = float(x.min(initial=0.0)) - cell, float(y.min(initial=0.0)) - cell
-        columns, rows = int((x.max(initial=0.0) - left) / cell) + 2, int((y.max(initial=0.0) - top) / cell) + 2
-        there = np.full((rows, columns), -1, np.int32)
-        points, line = np.ascontiguousarray(points), which.astype(np.int32)
-        _turns.mark(points, line, some.astype(np.int32), columns, rows, left, top, cell, there.ravel())
-        return cls(points, np.ascontiguousarray(normals), line, there, left, top, cell, spacing)
-
-    def _asked(self) -> tuple[object, ...]:
-        rows, columns = self.there.shape
-        return (
-            self.points, self.normals, self.which, self.there.ravel(), columns, rows, self.left, self.top, self.cell,
-            NEAREST * self.spacing, STEP * self.spacing, PROBES, max(3, round(3 * self.spacing)),
-        )  # fmt: skip
-
-    def beside(self, samples: Ints) -> npt.NDArray[np.int32]:
-        """(n, 2) the sample of another line that is next on both sides of such samples, -1 where none is near."""
-        out = np.empty((len(samples), 2), np.int32)
-        _turns.beside(*self._asked(), samples.astype(np.int32), out)
-        return out
-
-    def distances(self) -> tuple[Floats, Floats, Mask]:
-        """How far apart lines are at each sample (p,), the mean of both sides; how much more to the normal's side.
-
-        And whether there is a line on either side, of about the same direction.
-        """
-        n, spacing = len(self.points), self.spacing
-        apart, more, both = np.empty(n), np.empty(n), np.empty(n, np.uint8)
-        _turns.distances(*self._asked(), LEAST * spacing, MOST * spacing, spacing, ALIKE_COSINE, apart, more, both)
-        return apart, more, both > 0
+def _neighbours(points: Floats, normals: Floats, which: Ints, some: Ints, spacing: float) -> _turns.Neighbours:
+    """Where lines are, so that those of their samples that are among `some` are found from beside."""
+    cell = CELL * spacing
+    x, y = points[:, 0], points[:, 1]
+    left, top = float(x.min(initial=0.0)) - cell, float(y.min(initial=0.0)) - cell
+    columns, rows = int((x.max(initial=0.0) - left) / cell) + 2, int((y.max(initial=0.0) - top) / cell) + 2
+    there = np.full((rows, columns), -1, np.int32)
+    points, normals, line = np.ascontiguousarray(points), np.ascontiguousarray(normals), which.astype(np.int32)
+    near = max(3, round(3 * spacing))  # samples are about a point apart
+    out = _turns.Neighbours(points, normals, line, there, left, top, cell, spacing, near)
+    out.mark(some.astype(np.int32))
+    return out
 
 
 def distances(points: Floats, first: Ints, normals: Floats, spacing: float) -> tuple[Floats, Floats, Mask]:
-    """`Neighbours.distances` of all lines."""
+    """How far apart lines are at each sample (p,), the mean of both sides; how much more to the normal's side.
+
+    And whether there is a line on either side, of about the same direction.
+    """
+    n = len(points)
     which = np.repeat(np.arange(len(first) - 1), np.diff(first))
-    return Neighbours.of(points, normals, which, np.arange(len(points)), spacing).distances()
+    apart, more, both = np.empty(n), np.empty(n), np.empty(n, np.uint8)
+    _neighbours(points, normals, which, np.arange(n), spacing).distances(apart, more, both)
+    return apart, more, both > 0
 
 
 def _sides(
@@ -123,7 +83,8 @@ def _sides(
     """(n,) 0 or 1 for each piece that is left."""
     some = np.flatnonzero(left[piece])
     half = some[::2]
-    met = Neighbours.of(points, normals, which, some, spacing).beside(half)
+    met = np.empty((len(half), 2), np.int32)
+    _neighbours(points, normals, which, some, spacing).beside(half.astype(np.int32), met)
     here = np.repeat(half, 2)[met.ravel() >= 0]
     pairs_of = np.sort(np.column_stack([piece[here], piece[met[met >= 0]]]), axis=1)
     n = len(follows)

@@ -171,8 +171,9 @@ class _Fit:
         self.paths = Paths(edges, self.width, self.height)
         self.x, self.y = axis(w * fine, self.width, 0, w * fine), axis(h * fine, self.height, 0, h * fine)
         self.crowds = _crowds(edges, self.width, self.height)
-        self.x_base, self.x_plain = _plain_rows(self.x, self.width, fine)
-        self.y_base, self.y_plain = _plain_rows(self.y, self.height, fine)
+        self.x_base, x_plain = _plain_rows(self.x, self.width, fine)
+        self.y_base, y_plain = _plain_rows(self.y, self.height, fine)
+        self.across, self.down = _points(self.x, self.x_base, x_plain), _points(self.y, self.y_base, y_plain)
         self.side = max(8, round(_BLOCK_PX * self.width / w))
         self.workers: list[_Worker] = []
 
@@ -207,15 +208,9 @@ class _Fit:
         pixels = rows[1] - rows[0], columns[1] - columns[0]
         samples = max(_SPAN, last - first), max(_SPAN, end - begin)
         weight, values, steps, seen = worker.room((*pixels, _SPAN * _SPAN), samples, (3, *samples), (2, *pixels))
-        x, y = self.x, self.y
-        tiles = np.array([*_tiles(y, *rows, self.fine), *_tiles(x, *columns, self.fine)], np.int32)
-        matters = _rows.rows(
-            worker.tile, worker.scratch, x.taps.where, x.taps.cubic, x.taps.bspline, x.cell, x.first,
-            y.taps.where, y.taps.cubic, y.taps.bspline, y.cell, y.first,
-            tiles, np.array([rows[0], columns[0]], np.int32), self.fine,
-            self.x_base, self.y_base, self.x_plain, self.y_plain, weight,
-        )  # fmt: skip
-        if not matters:
+        tiles = np.array([*_tiles(self.y, *rows, self.fine), *_tiles(self.x, *columns, self.fine)], np.int32)
+        begins = np.array([rows[0], columns[0]], np.int32)
+        if not _rows.rows(worker.tile, worker.scratch, self.across, self.down, tiles, begins, self.fine, weight):
             return
         values[:] = 0
         values[: last - first, : end - begin] = self.start[first:last, begin:end]
@@ -245,6 +240,12 @@ def _plain_rows(along: Axis, count: int, fine: int) -> tuple[npt.NDArray[np.int3
             sample = np.clip(along.taps.first[k::fine] + t, 0, count - 1)
             weight[pixel, sample - base] += along.taps.cubic[k::fine, t] / fine
     return base, weight.astype(np.float32)
+
+
+def _points(along: Axis, base: npt.NDArray[np.int32], plain: Grey32) -> _rows.Axis:
+    """What the kernel knows of one axis."""
+    taps = along.taps
+    return _rows.Axis(taps.where, taps.cubic, taps.bspline, along.cell, along.first, base, plain)
 
 
 def _pixels(base: npt.NDArray[np.int32], first: int, last: int, count: int) -> tuple[int, int]:

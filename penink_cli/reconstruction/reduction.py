@@ -82,12 +82,11 @@ def _take_near_edges(values: npt.NDArray[np.float32], edges: EdgeList, out: Floa
     ground = walkable(edges, old_width, old_height)
     across, down = int(old_width // _CELL) + 2, int(old_height // _CELL) + 2
     index = edge_index.lists(*edge_index.cells(np.column_stack(lines), _CELL), across, down)
+    near_by = _clean.Edges(*lines, _CELL, across, *index)
     factor = min(_clean.MAX_REACH - 1, max(old_width / width, old_height / height))
 
     def rows(first: int, last: int) -> None:
-        _clean.resample(
-            values, ground, *lines, _CELL, across, *index, first, last, round(factor), _SPREAD * factor,
-            (_STIFFNESS * factor) ** 2, near, out,
-        )  # fmt: skip
+        spread, stiffness = _SPREAD * factor, (_STIFFNESS * factor) ** 2
+        _clean.resample(values, ground, near_by, first, last, round(factor), spread, stiffness, near, out)
 
     threading.share(threading.ranges(rows, height, _BAND_ROWS), threading.count(threads))

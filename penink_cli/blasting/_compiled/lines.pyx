@@ -127,33 +127,99 @@ def smooth(
                     points[b - 1, 1] = points[a, 1]
 
 
+cdef class Lines:
+    """Polylines in equal steps on each. points: (p, 2); first: (lines + 1,) where each begins; length: (lines,)."""
+
+    cdef const double[:, ::1] points
+    cdef const long long[::1] first
+    cdef const double[::1] length
+
+    def __init__(self, const double[:, ::1] points, const long long[::1] first, const double[::1] length) -> None:
+        self.points = points
+        self.first = first
+        self.length = length
+
+
+cdef class Ends:
+    """Where strokes end, in lists by cells: a new end finds those that lie near it.
+
+    head: (rows, columns) the newest end in each cell, -1 for none; cells are `cell` wide, from left, top. link: (n,)
+    the end before each in its cell, -1 for none; tips: (n, 2) where they are. There is room for n, `count` are there.
+    """
+
+    cdef int[:, ::1] head
+    cdef int[::1] link
+    cdef double[:, ::1] tips
+    cdef double cell, left, top
+    cdef int count
+
+    def __init__(
+        self, int[:, ::1] head, int[::1] link, double[:, ::1] tips, double cell, double left, double top
+    ) -> None:
+        self.head = head
+        self.link = link
+        self.tips = tips
+        self.cell = cell
+        self.left = left
+        self.top = top
+        self.count = 0
+
+    cdef double crowd(self, double x, double y, double tx, double ty, double reach) noexcept nogil:
+        """How crowded an end at (x, y) would be by others near it: along its line (tx, ty), or within reach across."""
+        cdef Py_ssize_t row, column
+        cdef double along, across
+        cdef double cost = 0.0
+        cdef Py_ssize_t i = <Py_ssize_t>floor((y - self.top) / self.cell)
+        cdef Py_ssize_t j = <Py_ssize_t>floor((x - self.left) / self.cell)
+        cdef int e
+        for row in range(max(0, i - 1), min(self.head.shape[0], i + 2)):
+            for column in range(max(0, j - 1), min(self.head.shape[1], j + 2)):
+                e = self.head[row, column]
+                while e >= 0:
+                    along = fabs((self.tips[e, 0] - x) * tx + (self.tips[e, 1] - y) * ty)
+                    across = fabs((self.tips[e, 1] - y) * tx - (self.tips[e, 0] - x) * ty)
+                    if along < 5.0 and across < reach:
+                        cost += (5.0 - along) * (1.3 * reach - across) / reach
+                    e = self.link[e]
+        return cost
+
+    cdef void add(self, double x, double y) noexcept nogil:
+        """One more end, if it lies in a cell and there is room."""
+        cdef Py_ssize_t i = <Py_ssize_t>floor((y - self.top) / self.cell)
+        cdef Py_ssize_t j = <Py_ssize_t>floor((x - self.left) / self.cell)
+        if 0 <= i < self.head.shape[0] and 0 <= j < self.head.shape[1] and self.count < self.tips.shape[0]:
+            self.tips[self.count, 0] = x
+            self.tips[self.count, 1] = y
+            self.link[self.count] = self.head[i, j]
+            self.head[i, j] = self.count
+            self.count += 1
+
+
 def chop(
-    const double[:, ::1] points, const long long[::1] first, const double[::1] length,
-    const unsigned char[:, ::1] goes_on, const double[::1] spacing,
-    double shortest, double least, double most, double cell, double left, double top, Py_ssize_t columns,
-    Py_ssize_t rows, unsigned long long seed, int[::1] head, int[::1] link, double[:, ::1] tips,
-    long long[::1] line, double[:, ::1] span, unsigned char[:, ::1] joined,
+    Lines lines, Ends ends, const unsigned char[:, ::1] goes_on, const double[::1] spacing, double shortest,
+    double least, double most, unsigned long long seed, long long[::1] line, double[:, ::1] span,
+    unsigned char[:, ::1] joined,
 ):
     """Cut lines into strokes from least to most long whose ends keep clear of the ends of others; returns how many.
 
-    points: in equal steps on each line. Lines shorter than shortest give none. goes_on: (lines, 2) whether a line goes
-    on as another one at its ends. spacing: (lines,) how far apart lines are there.
-    head, link, tips: the ends so far in lists by cells (columns × rows from left, top), scratch: head -1.
+    Lines shorter than shortest give none. goes_on: (lines, 2) whether a line goes on as another one at its ends.
+    spacing: (lines,) how far apart lines are there. ends: none yet, room for as many as there may be strokes.
     line, span, joined: of which line each stroke is, from where to where on it, and whether it goes on at its ends.
     """
-    cdef Py_ssize_t i, k, t, q, c, r, e, cx, cy
+    cdef Py_ssize_t i, k, t, q, c
     cdef Py_ssize_t n = 0
-    cdef Py_ssize_t ends = 0
     cdef Py_ssize_t room = line.shape[0]
-    cdef double at, end, where, step, f, x, y, tx, ty, d, cost, best, along, across, bx, by, reach
+    cdef const double[:, ::1] points = lines.points
+    cdef double length, at, end, where, step, f, x, y, tx, ty, d, cost, best, bx, by, reach
     cdef bint last
     cdef bint before
     with nogil:
-        for i in range(first.shape[0] - 1):
-            if length[i] < shortest:
+        for i in range(lines.first.shape[0] - 1):
+            length = lines.length[i]
+            if length < shortest:
                 continue
-            q = first[i + 1] - first[i] - 1
-            step = length[i] / q
+            q = lines.first[i + 1] - lines.first[i] - 1
+            step = length / q
             at = 0.0
             before = goes_on[i, 0]
             reach = 2.2 * spacing[i]
@@ -162,52 +228,30 @@ def chop(
             bx = 0.0
             by = 0.0
             while True:
-                last = length[i] - at <= most
-                end = length[i]
+                last = length - at <= most
+                end = length
                 if not last:
                     best = 1e30
                     for t in range(TRIES):
                         where = at + least + _chance(seed, i * 4096 + k, t) * (most - least)
-                        if where > length[i] - least:
-                            where = length[i] - least - _chance(seed, i * 4096 + k, t + 64) * 2.0
+                        if where > length - least:
+                            where = length - least - _chance(seed, i * 4096 + k, t + 64) * 2.0
                         c = <Py_ssize_t>(where / step)
                         c = q - 1 if c >= q else c
                         f = where / step - c
-                        c = first[i] + c
+                        c = lines.first[i] + c
                         tx = points[c + 1, 0] - points[c, 0]
                         ty = points[c + 1, 1] - points[c, 1]
                         x = points[c, 0] + f * tx
                         y = points[c, 1] + f * ty
                         d = sqrt(tx * tx + ty * ty) + 1e-12
-                        tx /= d
-                        ty /= d
-                        cost = 0.0
-                        cx = <Py_ssize_t>floor((x - left) / cell)
-                        cy = <Py_ssize_t>floor((y - top) / cell)
-                        for r in range(cy - 1, cy + 2):
-                            for c in range(cx - 1, cx + 2):
-                                if c < 0 or r < 0 or c >= columns or r >= rows:
-                                    continue
-                                e = head[r * columns + c]
-                                while e >= 0:
-                                    along = fabs((tips[e, 0] - x) * tx + (tips[e, 1] - y) * ty)
-                                    across = fabs((tips[e, 1] - y) * tx - (tips[e, 0] - x) * ty)
-                                    if along < 5.0 and across < reach:
-                                        cost += (5.0 - along) * (1.3 * reach - across) / reach
-                                    e = link[e]
+                        cost = ends.crowd(x, y, tx / d, ty / d, reach)
                         if cost < best:
                             best = cost
                             end = where
                             bx = x
                             by = y
-                    cx = <Py_ssize_t>floor((bx - left) / cell)
-                    cy = <Py_ssize_t>floor((by - top) / cell)
-                    if 0 <= cx < columns and 0 <= cy < rows and ends < tips.shape[0]:
-                        tips[ends, 0] = bx
-                        tips[ends, 1] = by
-                        link[ends] = head[cy * columns + cx]
-                        head[cy * columns + cx] = <int>ends
-                        ends += 1
+                    ends.add(bx, by)
                 if n < room:
                     line[n] = i
                     span[n, 0] = at
@@ -318,8 +362,7 @@ cdef double _fit(
 
 
 def cubics(
-    const double[:, ::1] points, const long long[::1] first, const double[::1] length,
-    const long long[::1] line, const double[:, ::1] span, const double[:, ::1] hand, double tolerance,
+    Lines lines, const long long[::1] line, const double[:, ::1] span, const double[:, ::1] hand, double tolerance,
     long long[::1] count,
 ):
     """How many cubics (n,) each stroke needs to be within tolerance of the line that the hand draws along.
@@ -327,34 +370,34 @@ def cubics(
     line, span: of which line each is, from where to where, beyond its ends too. hand: (n, 3) shift to the side, the
     same more at the end and less at the start, and bow, points.
     """
-    cdef Py_ssize_t n, k, steps
+    cdef Py_ssize_t n, k, steps, i
     cdef double[6 * MOST_CUBICS + 2] out
     cdef double step
     with nogil:
         for n in range(line.shape[0]):
-            steps = first[line[n] + 1] - first[line[n]] - 1
-            step = length[line[n]] / steps
+            i = lines.first[line[n]]
+            steps = lines.first[line[n] + 1] - i - 1
+            step = lines.length[line[n]] / steps
             k = 1
             while k < MOST_CUBICS and _fit(
-                &points[first[line[n]], 0], steps, step, span[n, 0], span[n, 1], &hand[n, 0], k, out
+                &lines.points[i, 0], steps, step, span[n, 0], span[n, 1], &hand[n, 0], k, out
             ) > tolerance:
                 k += 1 if k < 4 else (k + 1) // 2
             count[n] = k if k < MOST_CUBICS else MOST_CUBICS
 
 
 def draw(
-    const double[:, ::1] points, const long long[::1] first, const double[::1] length,
-    const long long[::1] line, const double[:, ::1] span, const double[:, ::1] hand, const long long[::1] count,
-    const long long[::1] begin, double[:, ::1] out,
+    Lines lines, const long long[::1] line, const double[:, ::1] span, const double[:, ::1] hand,
+    const long long[::1] count, const long long[::1] begin, double[:, ::1] out,
 ):
     """Control points of each stroke as count cubics, from begin on in out (see `cubics`)."""
-    cdef Py_ssize_t n, steps
+    cdef Py_ssize_t n, steps, i
     cdef double step
     with nogil:
         for n in range(line.shape[0]):
-            steps = first[line[n] + 1] - first[line[n]] - 1
-            step = length[line[n]] / steps
+            i = lines.first[line[n]]
+            steps = lines.first[line[n] + 1] - i - 1
+            step = lines.length[line[n]] / steps
             _fit(
-                &points[first[line[n]], 0], steps, step, span[n, 0], span[n, 1], &hand[n, 0], count[n],
-                &out[begin[n], 0],
+                &lines.points[i, 0], steps, step, span[n, 0], span[n, 1], &hand[n, 0], count[n], &out[begin[n], 0]
             )

@@ -7,106 +7,127 @@ Only `taking_turns` imports this module.
 from libc.math cimport fabs
 
 
-def mark(
-    double[:, ::1] points, int[::1] which, int[::1] some, Py_ssize_t columns, Py_ssize_t rows, double left, double top,
-    double cell, int[::1] there,
-):
-    """Put the nearest of `some` samples, in order, into each cell that their lines pass, four places a sample."""
-    cdef Py_ssize_t k, n
-    cdef int i, after, x, y
-    cdef double part
-    with nogil:
-        for k in range(some.shape[0]):
-            i = some[k]
-            after = i + 1 if i + 1 < points.shape[0] and which[i + 1] == which[i] else i
-            for n in range(4):
-                part = 0.25 * n
-                x = <int>((points[i, 0] + part * (points[after, 0] - points[i, 0]) - left) / cell)
-                y = <int>((points[i, 1] + part * (points[after, 1] - points[i, 1]) - top) / cell)
-                if 0 <= x < columns and 0 <= y < rows:
-                    there[y * columns + x] = i if n < 2 else after
+#: The search for the next line across, in parts of the distance of lines: where it begins and its step; how many steps.
+cdef double _NEAREST = 0.5, _STEP = 0.14
+cdef int _PROBES = 11
+#: The bounds within which the distance of two lines is believed, in parts of the usual one.
+cdef double _LEAST = 0.4, _MOST = 2.0
+#: The least cosine of the angle between two lines that count as beside each other.
+cdef double _ALIKE_COSINE = 0.8
 
 
-cdef int _next(
-    double[:, ::1] points, double[:, ::1] normals, int[::1] which, int[::1] there, Py_ssize_t columns,
-    Py_ssize_t rows, double left, double top, double cell, double first, double step, Py_ssize_t probes, int near,
-    int i,
-) noexcept nogil:
-    """The sample of another line that is met first from sample i: along its normal, or against it by a negative step.
+cdef class Neighbours:
+    """Lines about so far apart as spacing, and a grid in which those beside a line are found.
 
-    there: (rows · columns) a sample in each cell, which are so wide, from left, top; -1 for none. which: the line of
-    each sample. A line is looked for at so many places, a step apart, from first on; on the same line only samples
-    further than near count. Returns -1 if there is none.
+        ┌─────┬─────┬─────┐      Each cell holds a sample of the line that passes it (a, b), or none. From sample i of
+        │  a──┼──a──┼──a  │      line b the cells along its normal are looked at, from half a spacing on: the first
+        ├─────┼──↑──┼─────┤      that holds another line's sample tells the next line on that side. Against the
+        │     │  ┊  │     │      normal it is the same. A ring or a spiral may be beside itself: samples of the same
+        ├─────┼──┊──┼─────┤      line count where they are further than `near` along it.
+        │  b──┼──i──┼──b  │
+        └─────┴─────┴─────┘
+
+    points: (p, 2) samples, one line after the other; normals: (p, 2) unit vectors; which: (p,) the line of each. there:
+    (rows, columns) the sample in each cell, -1 for none; cells are `cell` wide, from left, top. All lengths are in the
+    unit of spacing.
     """
-    cdef Py_ssize_t n
-    cdef int hit, x, y
-    cdef double way
-    for n in range(probes):
-        way = first + n * step
-        x = <int>((points[i, 0] + way * normals[i, 0] - left) / cell)
-        y = <int>((points[i, 1] + way * normals[i, 1] - top) / cell)
-        if x < 0 or y < 0 or x >= columns or y >= rows:
-            continue
-        hit = there[y * columns + x]
-        if hit >= 0 and (which[hit] != which[i] or hit - i > near or i - hit > near):
-            return hit
-    return -1
 
+    cdef double[:, ::1] points, normals
+    cdef int[::1] which
+    cdef int[:, ::1] there
+    cdef double left, top, cell, spacing
+    cdef int near
 
-def beside(
-    double[:, ::1] points, double[:, ::1] normals, int[::1] which, int[::1] there, Py_ssize_t columns,
-    Py_ssize_t rows, double left, double top, double cell, double first, double step, Py_ssize_t probes, int near,
-    int[::1] some, int[:, ::1] out,
-):
-    """The sample (n, 2) of another line next to each of `some` samples, on both sides, see `_next`."""
-    cdef Py_ssize_t k
-    with nogil:
-        for k in range(some.shape[0]):
-            out[k, 0] = _next(
-                points, normals, which, there, columns, rows, left, top, cell, first, step, probes, near, some[k]
-            )
-            out[k, 1] = _next(
-                points, normals, which, there, columns, rows, left, top, cell, -first, -step, probes, near, some[k]
-            )
+    def __init__(
+        self, double[:, ::1] points, double[:, ::1] normals, int[::1] which, int[:, ::1] there, double left, double top,
+        double cell, double spacing, int near,
+    ) -> None:
+        self.points = points
+        self.normals = normals
+        self.which = which
+        self.there = there
+        self.left = left
+        self.top = top
+        self.cell = cell
+        self.spacing = spacing
+        self.near = near
 
+    def mark(self, int[::1] some) -> None:
+        """Put the nearest of `some` samples, in order, into each cell that their lines pass, four places a sample."""
+        cdef Py_ssize_t k, n
+        cdef int i, after, x, y
+        cdef double part
+        cdef double[:, ::1] points = self.points
+        with nogil:
+            for k in range(some.shape[0]):
+                i = some[k]
+                after = i + 1 if i + 1 < points.shape[0] and self.which[i + 1] == self.which[i] else i
+                for n in range(4):
+                    part = 0.25 * n
+                    x = <int>((points[i, 0] + part * (points[after, 0] - points[i, 0]) - self.left) / self.cell)
+                    y = <int>((points[i, 1] + part * (points[after, 1] - points[i, 1]) - self.top) / self.cell)
+                    if 0 <= x < self.there.shape[1] and 0 <= y < self.there.shape[0]:
+                        self.there[y, x] = i if n < 2 else after
 
-def distances(
-    double[:, ::1] points, double[:, ::1] normals, int[::1] which, int[::1] there, Py_ssize_t columns,
-    Py_ssize_t rows, double left, double top, double cell, double first, double step, Py_ssize_t probes, int near,
-    double least, double most, double usual, double alike, double[::1] apart, double[::1] more, unsigned char[::1] both,
-):
-    """How far it is from each sample to the next lines: the mean of both sides, and how much more to the normal's side.
+    cdef int next(self, int i, double side) noexcept nogil:
+        """The sample of another line that is met first from sample i, on one side (1, -1) along its normal; or -1."""
+        cdef Py_ssize_t n
+        cdef int hit, x, y, gap
+        cdef double way
+        cdef double first = side * (_NEAREST * self.spacing)
+        cdef double step = side * (_STEP * self.spacing)
+        cdef double at_x = self.points[i, 0], at_y = self.points[i, 1]
+        cdef double normal_x = self.normals[i, 0], normal_y = self.normals[i, 1]
+        for n in range(_PROBES):
+            way = first + n * step
+            x = <int>((at_x + way * normal_x - self.left) / self.cell)
+            y = <int>((at_y + way * normal_y - self.top) / self.cell)
+            if x < 0 or y < 0 or x >= self.there.shape[1] or y >= self.there.shape[0]:
+                continue
+            hit = self.there[y, x]
+            gap = hit - i
+            if hit >= 0 and (self.which[hit] != self.which[i] or gap > self.near or -gap > self.near):
+                return hit
+        return -1
 
-    both: out, whether there are two, within so small an angle (its cosine); elsewhere apart is as usual, more nought.
-    Each distance is along the mean of both normals, so that it does not matter how far along its line the other sample
-    is; it is taken to lie between least and most.
-    """
-    cdef Py_ssize_t i, side
-    cdef int hit
-    cdef double cosine, x, y, d
-    cdef double[2] away
-    with nogil:
-        for i in range(points.shape[0]):
-            both[i] = 1
-            for side in range(2):
-                d = 1.0 - 2.0 * side
-                hit = _next(
-                    points, normals, which, there, columns, rows, left, top, cell, d * first, d * step, probes, near,
-                    <int>i,
-                )
-                cosine = 0.0
-                if hit >= 0:
-                    cosine = normals[i, 0] * normals[hit, 0] + normals[i, 1] * normals[hit, 1]
-                if fabs(cosine) <= alike:
-                    both[i] = 0
-                    break
-                d = -1.0 if cosine < 0.0 else 1.0
-                x = normals[i, 0] + d * normals[hit, 0]
-                y = normals[i, 1] + d * normals[hit, 1]
-                d = 0.5 * fabs((points[hit, 0] - points[i, 0]) * x + (points[hit, 1] - points[i, 1]) * y)
-                away[side] = least if d < least else (most if d > most else d)
-            apart[i] = 0.5 * (away[0] + away[1]) if both[i] else usual
-            more[i] = away[0] - away[1] if both[i] else 0.0
+    def beside(self, int[::1] some, int[:, ::1] out) -> None:
+        """Fill (n, 2): the sample of another line next to each of `some` samples, on both sides, -1 for none."""
+        cdef Py_ssize_t k
+        with nogil:
+            for k in range(some.shape[0]):
+                out[k, 0] = self.next(some[k], 1.0)
+                out[k, 1] = self.next(some[k], -1.0)
+
+    def distances(self, double[::1] apart, double[::1] more, unsigned char[::1] both) -> None:
+        """How far each sample is from the next lines: the mean of both sides, and how much more to the normal's side.
+
+        both: out, whether there are two, within a small angle; elsewhere apart is the spacing, more nought.
+        A distance is measured along the mean of both normals. So it does not matter how far along its line the other
+        sample is.
+        """
+        cdef Py_ssize_t i, side
+        cdef int hit
+        cdef double cosine, x, y, d
+        cdef double[2] away
+        cdef double[:, ::1] points = self.points, normals = self.normals
+        with nogil:
+            for i in range(points.shape[0]):
+                both[i] = 1
+                for side in range(2):
+                    hit = self.next(<int>i, 1.0 - 2.0 * side)
+                    cosine = 0.0
+                    if hit >= 0:
+                        cosine = normals[i, 0] * normals[hit, 0] + normals[i, 1] * normals[hit, 1]
+                    if fabs(cosine) <= _ALIKE_COSINE:
+                        both[i] = 0
+                        break
+                    d = -1.0 if cosine < 0.0 else 1.0
+                    x = normals[i, 0] + d * normals[hit, 0]
+                    y = normals[i, 1] + d * normals[hit, 1]
+                    d = 0.5 * fabs((points[hit, 0] - points[i, 0]) * x + (points[hit, 1] - points[i, 1]) * y)
+                    away[side] = min(_MOST * self.spacing, max(_LEAST * self.spacing, d))
+                apart[i] = 0.5 * (away[0] + away[1]) if both[i] else self.spacing
+                more[i] = away[0] - away[1] if both[i] else 0.0
 
 
 cdef inline int _root(int[::1] parent, signed char[::1] side, int i) noexcept nogil:

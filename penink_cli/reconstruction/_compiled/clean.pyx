@@ -199,29 +199,61 @@ def extrapolate(
                 out[i, j] = value
 
 
-cdef inline bint _sees(
-    double[::1] ax, double[::1] ay, double[::1] bx, double[::1] by, int e, double px, double py, double qx, double qy
-) noexcept nogil:
-    """Whether edge e leaves the segment from p to q alone, both shifted by (ε, ε²)."""
-    if side_of_query(ax[e], ay[e], bx[e], by[e], px, py) == side_of_query(ax[e], ay[e], bx[e], by[e], qx, qy):
-        return True
-    return side_of_vertex(px, py, qx, qy, ax[e], ay[e]) == side_of_vertex(px, py, qx, qy, bx[e], by[e])
+cdef class Edges:
+    """Edges among the pixels of an image, and which of them are near each square of `cell` pixels.
+
+    ax, ay, bx, by: (m,) their ends, pixels. begin, items: lists of the squares, `columns` of them in a row, as of
+    `geometry.edge_index.lists`.
+    """
+
+    cdef double[::1] ax, ay, bx, by
+    cdef double cell
+    cdef Py_ssize_t columns
+    cdef long long[::1] begin, items
+
+    def __init__(
+        self, double[::1] ax, double[::1] ay, double[::1] bx, double[::1] by, double cell, Py_ssize_t columns,
+        long long[::1] begin, long long[::1] items,
+    ) -> None:
+        self.ax = ax
+        self.ay = ay
+        self.bx = bx
+        self.by = by
+        self.cell = cell
+        self.columns = columns
+        self.begin = begin
+        self.items = items
+
+    cdef bint hides(self, int e, double px, double py, double qx, double qy) noexcept nogil:
+        """Whether edge e cuts the segment from p to q, both shifted by (ε, ε²)."""
+        cdef double ax = self.ax[e], ay = self.ay[e], bx = self.bx[e], by = self.by[e]
+        if side_of_query(ax, ay, bx, by, px, py) == side_of_query(ax, ay, bx, by, qx, qy):
+            return False
+        return side_of_vertex(px, py, qx, qy, ax, ay) != side_of_vertex(px, py, qx, qy, bx, by)
+
+    cdef bint hide(self, double px, double py, double qx, double qy) noexcept nogil:
+        """Whether any edge cuts the segment from p to q."""
+        cdef Py_ssize_t i, j, k
+        for i in range(<Py_ssize_t>(min(py, qy) / self.cell), <Py_ssize_t>(max(py, qy) / self.cell) + 1):
+            for j in range(<Py_ssize_t>(min(px, qx) / self.cell), <Py_ssize_t>(max(px, qx) / self.cell) + 1):
+                for k in range(self.begin[i * self.columns + j], self.begin[i * self.columns + j + 1]):
+                    if self.hides(<int>self.items[k], px, py, qx, qy):
+                        return True
+        return False
 
 
 def resample(
-    float[:, ::1] values, Ground ground, double[::1] ax, double[::1] ay, double[::1] bx, double[::1] by, double cell,
-    Py_ssize_t columns, long long[::1] begin, long long[::1] items, Py_ssize_t first_row, Py_ssize_t last_row,
-    int steps, double spread, double stiffness, float[:, ::1] near, double[:, ::1] out,
+    float[:, ::1] values, Ground ground, Edges edges, Py_ssize_t first_row, Py_ssize_t last_row, int steps,
+    double spread, double stiffness, float[:, ::1] near, double[:, ::1] out,
 ) -> None:
     """Fill new samples of some rows, those with a finite `near`, each from the pixels that its place reaches.
 
-    begin, items: which edges are near each square of `cell` pixels, `columns` of them in a row, as of
-    `geometry.edge_index.lists`. spread, stiffness: as of `_plane`, the weights being a Gaussian.
+    spread, stiffness: as of `_plane`, the weights being a Gaussian.
     """
-    cdef Py_ssize_t i, j, k, ci, cj
+    cdef Py_ssize_t i, j, k
     cdef int pi, pj, di, dj
     cdef double x, y, px, py, d
-    cdef bint visible, any_visible
+    cdef bint any_visible
     cdef unsigned long long[49] seen
     cdef double[49] across, down
     cdef Py_ssize_t height = values.shape[0]
@@ -246,13 +278,7 @@ def resample(
                             continue
                         px = pj + dj + 0.5
                         py = pi + di + 0.5
-                        visible = True
-                        for ci in range(<Py_ssize_t>(min(y, py) / cell), <Py_ssize_t>(max(y, py) / cell) + 1):
-                            for cj in range(<Py_ssize_t>(min(x, px) / cell), <Py_ssize_t>(max(x, px) / cell) + 1):
-                                for k in range(begin[ci * columns + cj], begin[ci * columns + cj + 1]):
-                                    if not _sees(ax, ay, bx, by, <int>items[k], x, y, px, py):
-                                        visible = False
-                        if visible:
+                        if not edges.hide(x, y, px, py):
                             seen[steps + di] |= one << (steps + dj)
                             any_visible = True
                 if not any_visible:

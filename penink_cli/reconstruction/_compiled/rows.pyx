@@ -96,18 +96,39 @@ cdef void _change(
             )
 
 
+cdef class Axis:
+    """The points along one axis of a picture, fine of them a pixel, and the samples that its pixels depend on.
+
+    where, cubic, bspline: (n,) place of each point and (n, 4) its taps, and cell, first: (t,), (t + 1,) the tiles of
+    points, all as in lattice.Axis. base: (pixels,) first sample that each pixel depends on; plain: (pixels, 5) its
+    weights in plain convolution from there on.
+    """
+
+    cdef double[::1] where
+    cdef double[:, ::1] cubic, bspline
+    cdef int[::1] cell, first, base
+    cdef float[:, ::1] plain
+
+    def __init__(
+        self, double[::1] where, double[:, ::1] cubic, double[:, ::1] bspline, int[::1] cell, int[::1] first,
+        int[::1] base, float[:, ::1] plain,
+    ) -> None:
+        self.where = where
+        self.cubic = cubic
+        self.bspline = bspline
+        self.cell = cell
+        self.first = first
+        self.base = base
+        self.plain = plain
+
+
 def rows(
-    Tile tile, Scratch scratch, double[::1] x, double[:, ::1] xc, double[:, ::1] xb, int[::1] x_cell, int[::1] x_begin,
-    double[::1] y, double[:, ::1] yc, double[:, ::1] yb, int[::1] y_cell, int[::1] y_begin, int[::1] tiles,
-    int[::1] pixels, int fine, int[::1] x_base, int[::1] y_base, float[:, ::1] x_plain, float[:, ::1] y_plain,
-    float[:, :, ::1] weight,
+    Tile tile, Scratch scratch, Axis x, Axis y, int[::1] tiles, int[::1] pixels, int fine, float[:, :, ::1] weight
 ):
     """Fill the rows of some pixels, each the mean of fine × fine points. True if an edge matters.
 
-    scratch: of single numbers. x …, y …: of all points along each axis, as in lattice.Axis. tiles: (4,) first and
-    last + 1 tile down and across. pixels: (2,) row and column of the block's first pixel. x_base, y_base: first
-    sample that each pixel of an axis depends on; x_plain, y_plain: (n, 5) weights of plain convolution from there on.
-    weight: (rows, columns, 25) filled: 5 × 5 samples from the bases on.
+    scratch: of single numbers. tiles: (4,) first and last + 1 tile down and across. pixels: (2,) row and column of the
+    block's first pixel. weight: (rows, columns, 25) filled: 5 × 5 samples from the bases on.
     """
     cdef int a, b, r, c, i, j, k, s, nx, ny, py, px, at_x, at_y
     cdef float v
@@ -126,19 +147,19 @@ def rows(
             for px in range(weight.shape[1]):
                 w = &weight[py, px, 0]
                 for i in range(5):
-                    v = y_plain[pixels[0] + py, i]
+                    v = y.plain[pixels[0] + py, i]
                     for j in range(5):
-                        w[5 * i + j] = v * x_plain[pixels[1] + px, j]
+                        w[5 * i + j] = v * x.plain[pixels[1] + px, j]
         for a in range(tiles[0], tiles[1]):
-            at_y = y_begin[a]
-            ny = y_begin[a + 1] - at_y
-            tile.place_in_row(y_cell[a], &y[at_y], ny)
+            at_y = y.first[a]
+            ny = y.first[a + 1] - at_y
+            tile.place_in_row(y.cell[a], &y.where[at_y], ny)
             for b in range(tiles[2], tiles[3]):
-                if tile.scene.empty_around(x_cell[b], y_cell[a]):
+                if tile.scene.empty_around(x.cell[b], y.cell[a]):
                     continue
-                at_x = x_begin[b]
-                nx = x_begin[b + 1] - at_x
-                tile.place(x_cell[b], &x[at_x], nx)
+                at_x = x.first[b]
+                nx = x.first[b + 1] - at_x
+                tile.place(x.cell[b], &x.where[at_x], nx)
                 if not tile.see():
                     continue
                 matters = True
@@ -149,20 +170,19 @@ def rows(
                     k = at_x + min(c, nx - 1)
                     pixel[c] = k // fine - pixels[1]
                     for j in range(4):
-                        columns_c[8 * j + c] = <float>xc[k, j]
-                        columns_b[8 * j + c] = <float>xb[k, j]
-                        place[4 * c + j] = min(last_x, max(0, x_cell[b] - 1 + j)) - x_base[k // fine]
+                        columns_c[8 * j + c] = <float>x.cubic[k, j]
+                        columns_b[8 * j + c] = <float>x.bspline[k, j]
+                        place[4 * c + j] = min(last_x, max(0, x.cell[b] - 1 + j)) - x.base[k // fine]
                 for r in range(ny):
                     k = at_y + r
                     py = k // fine - pixels[0]
                     if py < 0 or py >= weight.shape[0]:
                         continue
                     for i in range(4):
-                        down[i] = 5 * (min(last_y, max(0, y_cell[a] - 1 + i)) - y_base[k // fine])
+                        down[i] = 5 * (min(last_y, max(0, y.cell[a] - 1 + i)) - y.base[k // fine])
                     _change(
-                        scratch, r, shaded[r], faded[r], columns_c, columns_b,
-                        &yc[k, 0], &yb[k, 0], change,
-                    )  # fmt: skip
+                        scratch, r, shaded[r], faded[r], columns_c, columns_b, &y.cubic[k, 0], &y.bspline[k, 0], change
+                    )
                     for c in range(nx):
                         px = pixel[c]
                         if px < 0 or px >= weight.shape[1]:

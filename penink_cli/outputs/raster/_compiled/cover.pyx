@@ -17,6 +17,14 @@ STEPS = 16
 cdef double FLAT = 0.02
 
 
+cdef struct Points:
+    # The points of some pixel rows: a bit each, 16 rows of them a pixel row, a word a pixel.
+    unsigned short* bits
+    Py_ssize_t width  # pixels
+    double top  # the first pixel row
+    long long rows  # of points
+
+
 cdef inline void _span(unsigned short* row, double left, double right, long long most) noexcept nogil:
     """Set the points of a row whose middles lie from left to right, in pixels; bit 0 is a pixel's first."""
     cdef long long low, high, a, b, k
@@ -46,11 +54,8 @@ cdef inline void _span(unsigned short* row, double left, double right, long long
     row[b] |= final
 
 
-cdef void _capsule(
-    unsigned short* bits, Py_ssize_t width, double top, long long rows, double ax, double ay, double bx, double by,
-    double r,
-) noexcept nogil:
-    """Ink all within r of the line from a to b; `rows` rows of points from the pixel row `top` on."""
+cdef void _capsule(const Points* band, double ax, double ay, double bx, double by, double r) noexcept nogil:
+    """Ink all within r of the line from a to b."""
     cdef double y, half, left, right, x
     cdef long long end
     cdef double dx = bx - ax
@@ -59,15 +64,15 @@ cdef void _capsule(
     cdef double nx = 0.0, ny = 0.0, slope = 0.0, inner_low = 1.0, inner_high = 0.0
     cdef double low = min(ay, by)
     cdef double high = max(ay, by)
-    cdef double from_row = (low - r - top) * 16.0 - 0.5
-    cdef double to_row = (high + r - top) * 16.0 - 0.5
+    cdef double from_row = (low - r - band.top) * 16.0 - 0.5
+    cdef double to_row = (high + r - band.top) * 16.0 - 0.5
     cdef long long j = 0
-    cdef long long most = 16 * width - 1
-    if to_row < 0.0 or from_row > rows - 1 or max(ax, bx) + r < 0.0 or min(ax, bx) - r > width:
+    cdef long long most = 16 * band.width - 1
+    if to_row < 0.0 or from_row > band.rows - 1 or max(ax, bx) + r < 0.0 or min(ax, bx) - r > band.width:
         return
     if from_row > 0.0:
         j = <long long>from_row
-    end = rows - 1 if to_row >= rows - 1 else <long long>to_row
+    end = band.rows - 1 if to_row >= band.rows - 1 else <long long>to_row
     if length > 0.0:
         nx = -dy * r / length
         ny = dx * r / length
@@ -79,7 +84,7 @@ cdef void _capsule(
             inner_low = low + ny
             inner_high = high - ny
     while j <= end:
-        y = top + (j + 0.5) / 16.0
+        y = band.top + (j + 0.5) / 16.0
         if inner_low <= y <= inner_high:  # the row crosses both long sides
             left = ax + nx + (y - ay - ny) * slope
             right = ax - nx + (y - ay + ny) * slope
@@ -108,38 +113,37 @@ cdef void _capsule(
                     left = min(left, x)
                     right = max(right, x)
         if left <= right:
-            _span(bits + j * width, left, right, most)
+            _span(band.bits + j * band.width, left, right, most)
         j += 1
 
 
 cdef void _cone(
-    unsigned short* bits, Py_ssize_t width, double top, long long rows,
-    double ax, double ay, double bx, double by, double ra, double rb,
+    const Points* band, double ax, double ay, double bx, double by, double ra, double rb
 ) noexcept nogil:
     """Ink what a disc covers on its way from a to b while its radius goes from ra to rb: the hull of both discs."""
     cdef double dx = bx - ax
     cdef double dy = by - ay
     cdef double length = sqrt(dx * dx + dy * dy)
     cdef double y, half, left, right, x, lean, across, from_row, to_row
-    cdef long long j = 0, end, most = 16 * width - 1
+    cdef long long j = 0, end, most = 16 * band.width - 1
     cdef int side
     # the two long sides, from s to e, touch the discs at ra · m and rb · m, m the unit vector at right angles to them
     cdef double[2] sx, sy, ex, ey
     if ra == rb or length <= fabs(ra - rb):
         if length > fabs(ra - rb):
-            _capsule(bits, width, top, rows, ax, ay, bx, by, ra)
+            _capsule(band, ax, ay, bx, by, ra)
         elif ra > rb:  # one disc holds the other
-            _capsule(bits, width, top, rows, ax, ay, ax, ay, ra)
+            _capsule(band, ax, ay, ax, ay, ra)
         else:
-            _capsule(bits, width, top, rows, bx, by, bx, by, rb)
+            _capsule(band, bx, by, bx, by, rb)
         return
-    from_row = (min(ay - ra, by - rb) - top) * 16.0 - 0.5
-    to_row = (max(ay + ra, by + rb) - top) * 16.0 - 0.5
-    if to_row < 0.0 or from_row > rows - 1 or max(ax + ra, bx + rb) < 0.0 or min(ax - ra, bx - rb) > width:
+    from_row = (min(ay - ra, by - rb) - band.top) * 16.0 - 0.5
+    to_row = (max(ay + ra, by + rb) - band.top) * 16.0 - 0.5
+    if to_row < 0.0 or from_row > band.rows - 1 or max(ax + ra, bx + rb) < 0.0 or min(ax - ra, bx - rb) > band.width:
         return
     if from_row > 0.0:
         j = <long long>from_row
-    end = rows - 1 if to_row >= rows - 1 else <long long>to_row
+    end = band.rows - 1 if to_row >= band.rows - 1 else <long long>to_row
     lean = (ra - rb) / length
     across = sqrt(1.0 - lean * lean)
     for side in range(2):
@@ -151,7 +155,7 @@ cdef void _cone(
         ey[side] = by + rb * y
         across = -across
     while j <= end:
-        y = top + (j + 0.5) / 16.0
+        y = band.top + (j + 0.5) / 16.0
         left = 1e300
         right = -1e300
         half = ra * ra - (y - ay) * (y - ay)
@@ -170,13 +174,11 @@ cdef void _cone(
                 left = min(left, x)
                 right = max(right, x)
         if left <= right:
-            _span(bits + j * width, left, right, most)
+            _span(band.bits + j * band.width, left, right, most)
         j += 1
 
 
-cdef void _segment(
-    unsigned short* bits, Py_ssize_t width, double top, long long rows, const double* p, double r, double end_r
-) noexcept nogil:
+cdef void _segment(const Points* band, const double* p, double r, double end_r) noexcept nogil:
     """Ink one Bézier segment with the control points p[0] … p[7], of radius r at its start and end_r at its end."""
     cdef int k
     cdef double t, s, bx, by, last
@@ -198,10 +200,10 @@ cdef void _segment(
         bx = s * s * s * p[0] + 3.0 * s * s * t * p[2] + 3.0 * s * t * t * p[4] + t * t * t * p[6]
         by = s * s * s * p[1] + 3.0 * s * s * t * p[3] + 3.0 * s * t * t * p[5] + t * t * t * p[7]
         if r == end_r:
-            _capsule(bits, width, top, rows, ax, ay, bx, by, r)
+            _capsule(band, ax, ay, bx, by, r)
         else:
             last = r + (end_r - r) * (<double>(k - 1) / pieces)
-            _cone(bits, width, top, rows, ax, ay, bx, by, last, r + (end_r - r) * t)
+            _cone(band, ax, ay, bx, by, last, r + (end_r - r) * t)
         ax = bx
         ay = by
 
@@ -225,6 +227,7 @@ def band(
     cdef Py_ssize_t width = bits.shape[1]
     cdef Py_ssize_t words = width // 4
     cdef unsigned short* room = &bits[0, 0]
+    cdef Points band = Points(room, width, top, 16 * rows)
     cdef unsigned long long* sums = &counts[0]
     cdef unsigned long long ones = 0x5555555555555555, pairs = 0x3333333333333333, fours = 0x0F0F0F0F0F0F0F0F
     with nogil:
@@ -234,16 +237,14 @@ def band(
             stroke = members[i]
             k = first[stroke]
             if first[stroke + 1] == k + 1:
-                _capsule(
-                    room, width, top, 16 * rows, points[k, 0], points[k, 1], points[k, 0], points[k, 1], radii[stroke]
-                )  # fmt: skip
+                _capsule(&band, points[k, 0], points[k, 1], points[k, 0], points[k, 1], radii[stroke])
             knot = (k + 2 * stroke) // 3
             r = end_r = radii[stroke]
             while k + 3 < first[stroke + 1]:
                 if knot_radii.shape[0] > 0:
                     r = knot_radii[knot]
                     end_r = knot_radii[knot + 1]
-                _segment(room, width, top, 16 * rows, &points[k, 0], r, end_r)
+                _segment(&band, &points[k, 0], r, end_r)
                 k += 3
                 knot += 1
         for j in range(rows):
