@@ -25,6 +25,8 @@ LEVELS = 3
 PIECE, ALIKE, ROUNDS = 12, 16.0, 12
 #: The width of the cells of the grid in which neighbours are found, in parts of the distance of lines.
 CELL = 0.4
+#: How neighbours are looked for there, by the names that a page has for it.
+SEARCH: dict[str, float] = _turns.SEARCH
 
 
 def levels(points: Floats, first: Ints, normals: Floats, light: Floats, spacing: float) -> npt.NDArray[np.int8]:

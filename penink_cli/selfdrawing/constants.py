@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from penink_cli.blasting import constants, engraving, form, pen_lines, phase, shares
+from penink_cli.blasting import constants, engraving, form, pen_lines, phase, shares, taking_turns
 from penink_cli.blasting import telling as beside
 from penink_cli.ground.device import FILLED, MEAN
 from penink_cli.lines import strokes as pressed
@@ -39,6 +39,9 @@ FOLLOWING: dict[str, Any] = {
     "COARSE_SWEEPS": phase.COARSE_SWEEPS, "SWEEPS": phase.SWEEPS, "LINE_SMOOTHING": pen_lines.SMOOTHING,
     "GIVES_WAY": shares.GIVES_WAY, "BACK_AFTER": shares.BACK_AFTER,
     "FAINT": form.FAINT, "SPARSEST": form.SPARSEST, "RAGGED": form.RAGGED, "STROKE_PT": form.STROKE_PT,
+    "EVENINGS": engraving.EVENINGS, "EVENED": engraving.EVENED,
+    "PROLONGED": engraving.PROLONGED, "ROOM": engraving.ROOM,
+    "CELL_PART": taking_turns.CELL, **taking_turns.SEARCH,
     # cells of tone between the places at which a field is looked up
     "FIELD_CELLS": 3,
     # what lines cover where it is black, which the pen's pressure closes

@@ -19,7 +19,7 @@ from penink_cli.selfdrawing.data import LayerData, is_sent, layers, tile_bytes
 
 SOURCES = (
     "unpack.js", "constants.js", "reconstruct.js", "drawing.js", "outline.js", "telling.js", "phase.js", "follow.js",
-    "engrave.js", "data.js", "raster.js", "page.js",
+    "even.js", "engrave.js", "data.js", "raster.js", "page.js",
 )  # fmt: skip
 #: What stands in for sources that are not needed, where others call them all the same.
 INSTEAD = {
@@ -60,6 +60,7 @@ def _program(parts: list[LayerData]) -> str:
     along, engraved = any(part.field for part in parts), any(part.engraving for part in parts)
     needed = {
         "phase.js": along or engraved, "follow.js": along or engraved, "engrave.js": engraved,
+        "even.js": any(part.engraving and part.field for part in parts),
         "telling.js": any(part.told.lines for part in parts), "outline.js": any(part.outlined for part in parts),
     }  # fmt: skip
     return "\n".join(packer.source(name) if needed.get(name, True) else INSTEAD.get(name, "") for name in SOURCES)

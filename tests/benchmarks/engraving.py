@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import argparse
 import io
-import re
 import resource
 import shutil
 import subprocess
@@ -37,7 +36,7 @@ from tests.benchmarks.form import analytic
 from tests.blasting import measures
 from tests.outputs.rendering import difference, ghostscript, pixels
 from tests.selfdrawing.chromium import Page
-from tests.selfdrawing.drawn import page_svg
+from tests.selfdrawing.drawn import middles, page_svg
 
 PHOTOGRAPHS = ("camera", "coins", "astronaut", "chelsea", "coffee", "rocket", "moon")
 
@@ -193,15 +192,7 @@ def page_spacing() -> None:
         layer = Layer(samples, None, find_texture("engraving"), levels=64, directions=analytic(kind))
         with tempfile.TemporaryDirectory() as folder:
             text = page_svg(Illustration(432, 432, (layer,)), Path(folder), 432)
-        chains = []
-        for d in re.findall(r' d="M([^"]*)z"', text):
-            outline = np.array(d.split(), float).reshape(-1, 2) * 72 / 25.4
-            half = len(outline) // 2
-            knots = (outline[:half] + outline[::-1][:half]) / 2
-            third = np.diff(knots, axis=0) / 3
-            chain = np.stack([knots[:-1], knots[:-1] + third, knots[1:] - third], axis=1).reshape(-1, 2)
-            chains.append(np.concatenate([chain, knots[-1:]]))
-        f = measures.ray_gaps(Strokes.of(432, 432, chains, np.ones(len(chains))))
+        f = measures.ray_gaps(middles(text, 432, 432))
         print(f"  {kind:20} {f['cv']:8.3f} {f['doubled']:32.4f} {f['gaping']:7.4f}", flush=True)
 
 

@@ -50,6 +50,20 @@ def test_distances_are_those_to_the_neighbours():
     np.testing.assert_allclose(more[inner].reshape(3, 60)[:, 5], [0.5, -1.0, 0.5])
 
 
+def test_distances_are_told_at_any_angle():
+    """Lines askew pass corners of the cells in which they are looked for, and no ray may slip between two."""
+    for angle in np.radians([12.0, 37.0, 45.0, 63.0]):
+        across, along = np.mgrid[-20:20, -60:61]
+        c, s = np.cos(angle), np.sin(angle)
+        u, v = along.ravel() * 1.0, across.ravel() * 1.5
+        points, normals = np.column_stack([c * u - s * v, s * u + c * v]), np.tile([-s, c], (u.size, 1))
+        apart, more, both = taking_turns.distances(points, starts(np.full(40, 121)), normals, 1.5)
+        inner = (np.abs(across) < 17) & (np.abs(along) < 55)
+        assert both.reshape(40, 121)[inner].all()
+        np.testing.assert_allclose(apart.reshape(40, 121)[inner], 1.5)
+        np.testing.assert_allclose(more.reshape(40, 121)[inner], 0, atol=1e-9)
+
+
 def test_nothing_is_all_right():
     none = np.zeros((0, 2))
     assert taking_turns.levels(none, np.zeros(1, np.int64), none, np.zeros(0), 1.5).shape == (0,)

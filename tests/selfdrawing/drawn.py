@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import re
 import subprocess
 from pathlib import Path
 
@@ -36,6 +37,19 @@ def page_svg(picture: Illustration, tmp_path: Path, width: float) -> str:
         text = page.evaluate(f"svg({width}, [0, 0, {width}, {width * picture.height / picture.width}], 0)")
         assert page.console == []
     return str(text)
+
+
+def middles(text: str, width: float, height: float) -> Strokes:
+    """The middle lines of the shapes that a page has saved of an engraving so large, points."""
+    chains = []
+    for d in re.findall(r' d="M([^"]*)z"', text):
+        outline = np.array(d.split(), float).reshape(-1, 2) * 72 / 25.4
+        half = len(outline) // 2
+        knots = (outline[:half] + outline[::-1][:half]) / 2
+        third = np.diff(knots, axis=0) / 3
+        chain = np.stack([knots[:-1], knots[:-1] + third, knots[1:] - third], axis=1).reshape(-1, 2)
+        chains.append(np.concatenate([chain, knots[-1:]]))
+    return Strokes.of(width, height, chains, np.ones(len(chains)))
 
 
 def by_page(picture: Illustration, tmp_path: Path) -> np.ndarray:

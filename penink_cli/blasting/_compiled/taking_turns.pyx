@@ -14,6 +14,11 @@ cdef int _PROBES = 11
 cdef double _LEAST = 0.4, _MOST = 2.0
 #: The least cosine of the angle between two lines that count as beside each other.
 cdef double _ALIKE_COSINE = 0.8
+#: The same, for a page, by the names that they have there.
+SEARCH = {
+    "NEAREST": _NEAREST, "PROBE_STEP": _STEP, "PROBES": _PROBES, "LEAST_APART": _LEAST, "MOST_APART": _MOST,
+    "ALIKE_COSINE": _ALIKE_COSINE,
+}  # fmt: skip
 
 
 cdef class Neighbours:
@@ -53,21 +58,31 @@ cdef class Neighbours:
         self.near = near
 
     def mark(self, int[::1] some) -> None:
-        """Put the nearest of `some` samples, in order, into each cell that their lines pass, four places a sample."""
+        """Put the nearest of `some` samples, in order, into each cell that their lines pass, four places a sample.
+
+        Cells of a line share edges, so that no ray of steps shorter than a cell slips through a corner.
+        """
         cdef Py_ssize_t k, n
-        cdef int i, after, x, y
+        cdef int i, after, x, y, x_before, y_before
         cdef double part
         cdef double[:, ::1] points = self.points
         with nogil:
             for k in range(some.shape[0]):
                 i = some[k]
                 after = i + 1 if i + 1 < points.shape[0] and self.which[i + 1] == self.which[i] else i
-                for n in range(4):
+                x_before = y_before = -1
+                for n in range(5 if after != i else 1):
                     part = 0.25 * n
                     x = <int>((points[i, 0] + part * (points[after, 0] - points[i, 0]) - self.left) / self.cell)
                     y = <int>((points[i, 1] + part * (points[after, 1] - points[i, 1]) - self.top) / self.cell)
-                    if 0 <= x < self.there.shape[1] and 0 <= y < self.there.shape[0]:
+                    if x < 0 or y < 0 or x >= self.there.shape[1] or y >= self.there.shape[0]:
+                        continue
+                    if n < 4:
                         self.there[y, x] = i if n < 2 else after
+                    if x_before >= 0 and x_before != x and y_before != y:
+                        self.there[y, x_before] = i if n < 2 else after
+                    x_before = x
+                    y_before = y
 
     cdef int next(self, int i, double side) noexcept nogil:
         """The sample of another line that is met first from sample i, on one side (1, -1) along its normal; or -1."""

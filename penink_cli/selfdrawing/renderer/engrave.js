@@ -9,7 +9,10 @@ function tracksOf(sheet, every, across) {
   if (field) {
     // every second line is one on which the phase is 0, the others are half way
     const density = new Float32Array(sheet.tone.length).fill(1 / spacing / 2), walls = wallsOf(sheet);
-    linesAlong(sheet, +across, across ? CROSS_ANGLE : 0, density, null, every, walls, Math.max(spacing, 3), [0, 0.5]).forEach((lines, odd) => { for (const [xs, ys] of lines) out.push({xs, ys, odd}); });
+    const found = linesAlong(sheet, +across, across ? CROSS_ANGLE : 0, density, null, every, walls, Math.max(spacing, 3), [0, 0.5]);
+    // in haste they stay where the phase has them
+    const even = every > 1 ? found.flat() : evenedOut(found.flat(), spacing);
+    even.forEach(([xs, ys, wide], k) => out.push({xs, ys, wide, odd: k < found[0].length ? 0 : 1}));
     return {tracks: out, spacing};
   }
   const left = blocks.x0 / unit - 2, top = blocks.y0 / unit - 2, right = blocks.x1 / unit + 2, bottom = blocks.y1 / unit + 2;
