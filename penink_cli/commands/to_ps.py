@@ -11,7 +11,7 @@ from penink_cli.ground.streams import writing
 from penink_cli.options.common import Finite, output_options
 from penink_cli.options.layers import colour_option, colours_of, files_argument, page_options, read_layers
 
-OF_STROKES = ("paper", "margin", "landscape", "at", "colours", "device_dpi", "compress", "separations")
+OF_STROKES = ("paper", "margin", "landscape", "at", "colours", "device_dpi", "compress", "separations", "preview")
 OF_SELF = ("level", "readable")
 
 
@@ -26,6 +26,9 @@ OF_SELF = ("level", "readable")
     help="Narrow the strokes by what a printer of N dots an inch adds; for strokes blasted with --device-dpi none.",
 )
 @click.option("--separations", is_flag=True, help="For a press: a plate a page, each layer by itself and in black.")
+@click.option(
+    "--preview", is_flag=True, help="In an EPS, a small grey picture for programs that run no PostScript (EPSI)."
+)
 @click.option("--compress", is_flag=True, help="Deflate the strokes: half the size, for PostScript Level 3.")
 @click.option(
     "--self", "self_drawing", is_flag=True, help="FILE is an illustration: write an EPS that draws itself at any size."
@@ -42,6 +45,7 @@ def to_ps(
     colours: tuple[tuple[float, float, float], ...],
     device_dpi: float | None,
     compress: bool,
+    preview: bool,
     separations: bool,
     self_drawing: bool,
     level: str,
@@ -70,6 +74,8 @@ def to_ps(
     if self_drawing:
         write_self_drawing(files, output, "readable" if readable else "flate" if level == "3" else "lzw", max_pixels)
         return
+    if preview and (paper is not None or separations):
+        raise click.UsageError(f"--preview is of an EPS; with {'--paper' if paper else '--separations'} it is a page")
     from dataclasses import replace
     from functools import partial
 
@@ -86,7 +92,7 @@ def to_ps(
     if separations and page.paper is None:
         page = replace(page, paper="plate")
     with writing(output, binary=False) as out:
-        postscript.write(out, layers, page, inks, compress, partial(ordered, improve=False), separations)
+        postscript.write(out, layers, page, inks, compress, partial(ordered, improve=False), separations, preview)
 
 
 def _refuse_what_is_ignored(self_drawing: bool) -> None:

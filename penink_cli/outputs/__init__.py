@@ -1,7 +1,7 @@
 """Strokes to pictures. `registry.OUTPUTS` is the table of them; each module below it has a `write`.
 
 page             where the sheet lies on the paper
-postscript       EPS, or a page for a printer
+postscript       EPS, or a page for a printer; preview: the small picture in an EPS
 svg              with penwork: strokes shared out among a plotter's pens
 pdf
   swelling         the outlines of strokes that swell, where only shapes can be filled

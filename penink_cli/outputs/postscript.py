@@ -30,7 +30,7 @@ from penink_cli.formats.strokes import Sink
 from penink_cli.ground.decimals import plain
 from penink_cli.ground.exact import length as length_of
 from penink_cli.ground.model import Floats, Ints, Strokes
-from penink_cli.outputs import swelling, words
+from penink_cli.outputs import preview, swelling, words
 from penink_cli.outputs.page import Page, ink_box
 
 UNITS = 20  # a point: an eighth of a 0.4 pt pen
@@ -112,14 +112,20 @@ def write(
     compress: bool = False,
     order: Callable[[Strokes], Strokes] = lambda strokes: strokes,
     separations: bool = False,
+    with_preview: bool = False,
 ) -> None:
     """Write one EPS, or, where the page is a paper, one page for a printer.
 
     layers: the first at the bottom. colours: red, green, blue (0 … 1) of each layer; black if there is none.
     order: brings strokes into an order with short ways between them.
     separations: a plate a page: each layer by itself, and in black. The page is a paper.
+    with_preview: an EPS has a preview, for programs that run no PostScript.
     """
-    _write_head(out, layers, page, compress, len(layers) if separations else 1)
+    head = _write_head(out, layers, page, compress, len(layers) if separations else 1)
+    if with_preview:
+        for line in preview.comments(layers, page, head, colours):
+            out.write(line)
+    _write_prolog(out, layers, page, compress)
     units = _units(layers)
     pages = [[i] for i in range(len(layers))] if separations else [list(range(len(layers)))]
     for number, shown in enumerate(pages, 1):
@@ -159,7 +165,10 @@ def _write_page(
     out.write(b"end grestore\n%%PageTrailer\nshowpage\n")
 
 
-def _write_head(out: Sink, layers: Sequence[Strokes], page: Page, compress: bool, pages: int) -> None:
+def _write_head(
+    out: Sink, layers: Sequence[Strokes], page: Page, compress: bool, pages: int
+) -> tuple[int, int, int, int]:
+    """The comments at the beginning; the bounding box."""
     x0, y0, x1, y1 = 0.0, 0.0, page.width, page.height
     if page.paper:  # what is printed on the paper, not the paper
         x0, y0 = page.x, page.y
@@ -174,20 +183,25 @@ def _write_head(out: Sink, layers: Sequence[Strokes], page: Page, compress: bool
         bounds = (y0, x0, y1, x1)
         media = (page.height, page.width)
     exact = [*(math.floor(v * 1000) / 1000 for v in bounds[:2]), *(math.ceil(v * 1000) / 1000 for v in bounds[2:])]
-    rough = [*(math.floor(v) for v in exact[:2]), *(math.ceil(v) for v in exact[2:])]
+    rough = math.floor(exact[0]), math.floor(exact[1]), math.ceil(exact[2]), math.ceil(exact[3])
     out.write(b"%!PS-Adobe-3.0\n" if page.paper else b"%!PS-Adobe-3.0 EPSF-3.0\n")
-    out.write(b"%%%%BoundingBox: %d %d %d %d\n" % tuple(rough))
+    out.write(b"%%%%BoundingBox: %d %d %d %d\n" % rough)
     out.write(b"%%%%HiResBoundingBox: %s %s %s %s\n" % tuple(map(_number, exact)))
     out.write(b"%%%%Creator: penink\n%%%%Pages: %d\n%%%%DocumentData: Clean7Bit\n" % pages)
     if compress:
         out.write(b"%%LanguageLevel: 3\n")
     elif page.paper:
         out.write(b"%%LanguageLevel: 2\n")
-    size = tuple(map(_number, media))
     if page.paper:
+        size = tuple(map(_number, media))
         out.write(b"%%%%Orientation: %s\n" % (b"Landscape" if page.landscape else b"Portrait"))
         out.write(b"%%%%DocumentMedia: %s %s %s 0 () ()\n" % (page.paper.encode("ascii"), *size))
-    out.write(b"%%EndComments\n%%BeginProlog\n")
+    out.write(b"%%EndComments\n")
+    return rough
+
+
+def _write_prolog(out: Sink, layers: Sequence[Strokes], page: Page, compress: bool) -> None:
+    out.write(b"%%BeginProlog\n")
     out.write(PROLOG)
     if any(s.knot_widths is not None for s in layers):
         out.write(SWELLING)
@@ -195,6 +209,9 @@ def _write_head(out: Sink, layers: Sequence[Strokes], page: Page, compress: bool
         out.write(FLATE)
     out.write(b"end\n%%EndProlog\n")
     if page.paper:
+        # the paper goes through the printer upright
+        media = (page.height, page.width) if page.landscape else (page.width, page.height)
+        size = tuple(map(_number, media))
         out.write(b"%%%%BeginSetup\n%%%%BeginFeature: *PageSize %s\n" % page.paper.encode("ascii"))
         out.write(b"<< /PageSize [%s %s] >> setpagedevice\n%%%%EndFeature\n%%%%EndSetup\n" % size)
 

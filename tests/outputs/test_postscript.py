@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
+from penink_cli.formats import strokes
 from penink_cli.outputs import postscript
 from penink_cli.outputs.page import ink_box, lay_out
 from penink_cli.travel.order import ordered
@@ -114,6 +115,39 @@ initgraphics initmatrix quit renderbands setglobal setpagedevice setshared start
 statusdict userdict Date"  # fmt: skip
     for word in forbidden.split():
         assert not re.search(rf"\b{word}\b", text), word
+
+
+def test_the_preview_is_what_the_strokes_look_like(tmp_path):
+    """The layers reach over the sheet, so that the bounding box does too."""
+    layers = [crosshatch(300, 144), strokes_of([[[-9, 20], [0, 30], [100, 40], [150, 160]]], 12)]
+    colours = [(0.0, 0.0, 0.0), (1.0, 0.5, 0.0)]
+    text = written(layers, colours=colours, with_preview=True)
+    head, begin, rest = text.partition(b"%%EndComments\n%%BeginPreview: ")
+    section, end, body = rest.partition(b"%%EndPreview\n")
+    assert begin and end and head + b"%%EndComments\n" + body == written(layers, colours=colours)
+    size, *lines = section.decode().splitlines()
+    width, height, depth, count = map(int, size.split())
+    assert depth == 8 and count == len(lines) and all(re.fullmatch(r"%[0-9a-f]{2,80}", line) for line in lines)
+    shown = np.frombuffer(bytes.fromhex("".join(line[1:] for line in lines)), np.uint8).reshape(height, width)
+    box = [int(v) for v in re.search(rb"%%BoundingBox: (.*)", head)[1].split()]
+    assert box[0] < -9 and (width, height) == (box[2] - box[0], box[3] - box[1])
+    (tmp_path / "a.ps").write_bytes(b"%%!\n%d %d translate\n" % (-box[0], -box[1]) + text)
+    paper = (f"-dDEVICEWIDTHPOINTS={width}", f"-dDEVICEHEIGHTPOINTS={height}")
+    fine = ghostscript(tmp_path / "a.ps", 576, True, *paper)  # 8 pixels a point, of the ink's grey
+    wanted = 255 - fine.reshape(height, 8, width, 8).mean(axis=(1, 3))
+    assert np.abs(shown - wanted).mean() < 4 and np.abs(shown - wanted).max() < 60
+
+
+def test_a_large_pictures_preview_stays_small(penink, tmp_path):
+    wide = strokes_of([[[0, 0]]], 3, 5000, 2500)
+    section = written([wide], with_preview=True).split(b"%%BeginPreview: ")[1]
+    assert section.startswith(b"1000 500 8 12500\n") or section.startswith(b"1000 501 8 12525\n")
+    path = tmp_path / "a.strokes.jsonl"
+    with path.open("wb") as out:
+        strokes.write(out, wide)
+    assert b"%%BeginPreview" in penink("to-ps", "--preview", str(path)).stdout
+    for other in (("--paper", "a0"), ("--separations",)):
+        assert penink("to-ps", "--preview", *other, str(path)).returncode == 2
 
 
 def test_the_same_bytes_twice():
