@@ -19,19 +19,13 @@ def balanced(
     """
     told = [word for grey in greys for word in ("--tone", grey)]
     told += [word for name in over for word in ("--ink", name)]
-    numbers = list(enumerate(plates, 1))
     gamma = job.stages["blast"].get("gamma")
     drawn = hatched(greys, "draft.jsonl" if gamma is None else "hatching.jsonl")
     if gamma is None:
-        corrected = [
-            job.run("balance", ["--correct", *told, "--plate", str(i), *drawn], plate.named("corrected.pgm"))
-            for i, plate in numbers
-        ]
+        corrected = job.chain.run_plates("balance", ["--correct", *told, *drawn], "corrected-{}.pgm", len(plates))
         drawn = hatched(corrected, "hatching.jsonl")
     else:
         told += ["--gamma", said(gamma)]
     if "pen" in job.given:
         return drawn
-    return [
-        job.run("balance", [*told, "--plate", str(i), *drawn], plate.named("pressed.jsonl")) for i, plate in numbers
-    ]
+    return job.chain.run_plates("balance", [*told, *drawn], "pressed-{}.jsonl", len(plates))

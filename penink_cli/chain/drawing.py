@@ -34,7 +34,7 @@ def draw_one(
     width, max_pixels = options["width"], options["max_pixels"]
     stages = request.stages()
     inks = options["inks"]
-    steps = 9 if inks is None else 6 + 7 * len(inks.names)
+    steps = 9 if inks is None else 9 + 4 * len(inks.names)
     with progress(steps, "draw", quiet or options["quiet"]) as advance:
         shape = read_colours(file, max_pixels).values.shape
         rows, columns = shape[:2]
@@ -62,7 +62,7 @@ def _draw(job: Job, file: str | None, shape: tuple[int, ...], output: str | None
     edges = found.edges(job, grey, size)
     lines = found.lines(job, photo)
     directions = found.directions(job, photo, edges, lines)
-    of_each = plates(job, photo, shape) if job.inks else [Plate(grey, size)]
+    of_each = plates(job, photo, shape, size) if job.inks else [Plate(grey, size)]
     if of_illustrations(job.ending):
         illustrate(job, of_each, size, edges, lines, directions, output, page)
         return

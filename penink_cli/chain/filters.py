@@ -7,7 +7,7 @@ else made them. What one filter hands to the next lies on a workbench, in no fil
 from __future__ import annotations
 
 import shlex
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 
 import click
@@ -18,6 +18,7 @@ from penink_cli.ground.changes import noting
 from penink_cli.ground.errors import PeninkError
 from penink_cli.main import penink
 from penink_cli.options.common import warning_once
+from penink_cli.options.plates import PLACE
 
 
 class Chain:
@@ -49,14 +50,29 @@ class Chain:
 
     def run(self, filter_name: str, words: list[str], output: str | None, may_fail: bool = False) -> bool:
         """Run a filter; output: a name on the bench, or the user's, None for standard output. Whether all was well."""
+        target = [] if output is None else ["-o", output]
+        return self._ran(filter_name, words, target, [output], may_fail)
+
+    def run_plates(self, filter_name: str, words: list[str], pattern: str, count: int) -> list[str]:
+        """Run a filter that writes so many plates; the names of what it wrote: the pattern's, 1 and so on for {}."""
+        while any(pattern.replace(PLACE, str(i + 1)) in self._taken for i in range(count)):
+            pattern = f"drawing-{pattern}"
+        outputs = [self.name(pattern.replace(PLACE, str(i + 1))) for i in range(count)]
+        self._ran(filter_name, words, ["--plates", pattern], outputs, may_fail=False)
+        return outputs
+
+    def _ran(
+        self, filter_name: str, words: list[str], target: list[str], outputs: Sequence[str | None], may_fail: bool
+    ) -> bool:
         command = found(filter_name)
         known = {parameter.name for parameter in command.params}
         common = [word for parameter, word in self._common.items() if parameter in known]
-        target = [] if output is None else ["-o", output]
         call = (filter_name, *words)
-        made = self._kept.made(call) if self._kept and output in self._bench else None
-        if made is not None:
-            self._bench[str(output)] = made
+        names = [output for output in outputs if output is not None and output in self._bench]
+        kept = self._kept if len(names) == len(outputs) else None
+        made = [one for name in names if kept and (one := kept.made((*call, name))) is not None]
+        if kept and len(made) == len(names):
+            self._bench.update(zip(names, made, strict=True))
         else:
             with noting() as read:
                 try:
@@ -65,8 +81,9 @@ class Chain:
                     if may_fail:
                         return False
                     raise
-            if self._kept and output in self._bench:
-                self._kept.keep(call, read, self._bench[str(output)])
+            if kept:
+                for name in names:
+                    kept.keep((*call, name), read, self._bench[name])
         self._say(shlex.join(["penink", *call, *target]))
         self._step()
         return True

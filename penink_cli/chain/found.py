@@ -16,14 +16,20 @@ def grey(job: Job, photo: list[str], shape: tuple[int, ...]) -> tuple[str, tuple
     """The grey of the drawing, and its width and height in pixels. photo: words; shape: its rows and columns."""
     from penink_cli.composition.compose import working_size
 
-    told = job.words("compose", "compose")
-    told += ["--mask", job.given["mask"]] if "mask" in job.given else []
-    dpi = COMPOSED_DPI
-    if of_illustrations(job.ending):
-        dpi = POSTER_DPI
-        told += ["--dpi", repr(dpi)]
-    name = job.run("compose", [*job.on_paper, *told, *photo], "grey.pgm")
+    name = job.run("compose", [*_composing(job), *photo], "grey.pgm")
+    dpi = POSTER_DPI if of_illustrations(job.ending) else COMPOSED_DPI
     return name, working_size(shape, job.width, dpi / 72)
+
+
+def colours(job: Job, photo: list[str]) -> str:
+    """The colours of the drawing, of which plates are made."""
+    return job.run("compose", ["--color", *_composing(job), *photo], "colours.ppm")
+
+
+def _composing(job: Job) -> list[str]:
+    told = [*job.on_paper, *job.words("compose", "compose")]
+    told += ["--mask", job.given["mask"]] if "mask" in job.given else []
+    return told + (["--dpi", repr(POSTER_DPI)] if of_illustrations(job.ending) else [])
 
 
 def edges(job: Job, grey: str, size: tuple[int, int]) -> str:

@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 
 ARCHIVE = ".penink"
 USUAL_TEXTURE = "crosshatch"  # as `blast` has it
+FADING = {"mask", "vignette"}
+COMPOSING = {"strength", "detail", "mix", "target", "style_name", *FADING}
 OUTLINE_LENGTH = 0.04  # of the photo's longer side: shorter chains are texture, and the hatching's to show
 
 
@@ -37,6 +39,15 @@ class Job:
     ending: str
     device_dpi: float | None
     inks: Inks | None
+
+    @property
+    def composes(self) -> bool:
+        """Whether plates are made of composed colours: where the call says how, or names a style that does.
+
+        Else they have the photo's own.
+        """
+        moved = self.stages["compose"].get("strength") != 0 or not FADING.isdisjoint(self.given)
+        return moved and not COMPOSING.isdisjoint(self.given)
 
     @property
     def on_paper(self) -> list[str]:

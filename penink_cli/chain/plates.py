@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+from penink_cli.chain import found
 from penink_cli.chain.job import Job
 from penink_cli.ground.codes import code_of
 from penink_cli.options.inks import CMYK
@@ -43,8 +44,11 @@ class Plate:
         return {"name": self.name, "color": self.colour, "turn": self.turn, "seed": self.seed}
 
 
-def plates(job: Job, photo: list[str], shape: tuple[int, ...]) -> list[Plate]:
-    """The plate of each of the job's inks, the lightest first. photo: words; shape: its rows and columns."""
+def plates(job: Job, photo: list[str], shape: tuple[int, ...], size: tuple[int, int]) -> list[Plate]:
+    """The plate of each of the job's inks, the lightest first.
+
+    photo: words; shape: its rows and columns. size: width and height of what is composed.
+    """
     from penink_cli.composition.separation import lightest_first, turns
 
     assert job.inks is not None
@@ -57,10 +61,13 @@ def plates(job: Job, photo: list[str], shape: tuple[int, ...]) -> list[Plate]:
     seed = int(job.stages["blast"].get("seed", 0))
     told = ["--inks", "cmyk" if job.inks is CMYK else ",".join(job.inks.names)]
     told += ["--black", repr(job.given["black"])] if "black" in job.given else []
-    result, size = [], (shape[1], shape[0])
+    if job.composes:
+        photo = [found.colours(job, photo)]
+    else:
+        size = shape[1], shape[0]
+    made = job.chain.run_plates("separate", [*told, *photo], "plate-{}.pgm", n)
+    result = []
     for place, number in enumerate(order):
-        name = job.inks.names[number]
-        plate = job.run("separate", [*told, "--plate", str(number + 1), *photo], f"plate-{number + 1}.pgm")
-        colour = code_of(job.inks.colours[number])
-        result.append(Plate(plate, size, number + 1, name, colour, turned[place], seed + n - 1 - place))
+        name, colour = job.inks.names[number], code_of(job.inks.colours[number])
+        result.append(Plate(made[number], size, number + 1, name, colour, turned[place], seed + n - 1 - place))
     return result

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import click
 
 from penink_cli.ground.errors import ParameterError
-from penink_cli.ground.streams import reading, source_name, writing
+from penink_cli.ground.streams import source_name, writing
 from penink_cli.options.common import Finite, output_options, processors, threads_option
-from penink_cli.options.inputs import only_one_standard_input
-from penink_cli.options.layers import files_argument
+from penink_cli.options.inputs import only_one_standard_input, read_grey
+from penink_cli.options.layers import files_argument, read_layers
+from penink_cli.options.plates import names_of, plates_option
 from penink_cli.options.sheet import check_area
 
 if TYPE_CHECKING:
@@ -21,14 +21,11 @@ if TYPE_CHECKING:
 #: How far two sheets' sides may differ, points: hatching's has whole pixels of a grey, that of lines the photo's.
 SAME_PT = 0.5
 
-_made: tuple[object, list[Strokes] | list[Floats]] | None = None  # of the last plates: one call of `draw` wants each
-
 
 @click.command()
 @files_argument
-@click.option(
-    "--plate", type=click.IntRange(1), required=True, metavar="N", help="Write that one of the files, from 1."
-)
+@click.option("--plate", type=click.IntRange(1), metavar="N", help="Write that one of the files, from 1.")
+@plates_option
 @click.option(
     "--tone",
     "tone_files",
@@ -58,7 +55,8 @@ def balance(
     output: str | None,
     max_pixels: int,
     quiet: bool,
-    plate: int,
+    plate: int | None,
+    pattern: str | None,
     correct: bool,
     tone_files: tuple[str, ...],
     gamma: float,
@@ -69,32 +67,35 @@ def balance(
 
     FILEs are the strokes of the plates, each with its --color, drawn for themselves; what each is wrong by, and what
     they do to one another, is set right in all by widths that change by some percent. With --correct the plates' tones
-    are changed instead, to be drawn anew, as must be where one pen draws all. One plate is written; call it again for
-    each of the others.
+    are changed instead, to be drawn anew, as must be where one pen draws all. All are written, or, with --plate, one.
 
     \b
-    penink balance --plate 1 --tone blue.pgm --tone red.pgm blue.jsonl red.jsonl -o blue-pressed.jsonl
-    penink balance --plate 2 --tone blue.pgm --tone red.pgm blue.jsonl red.jsonl -o red-pressed.jsonl
+    penink balance --plates 'pressed-{}.jsonl' --tone blue.pgm --tone red.pgm blue.jsonl red.jsonl
     penink balance --plate 1 --correct --tone blue.pgm --tone red.pgm blue.jsonl red.jsonl -o blue-corrected.pgm
     """
     from penink_cli.formats import pgm, strokes
     from penink_cli.ground.model import GreyImage, Strokes
 
     files = files or ("-",)
-    if plate > len(files):
+    if (plate is None) == (pattern is None):
+        raise click.UsageError("give one of --plate and --plates")
+    if plate is not None and plate > len(files):
         raise click.UsageError(f"--plate {plate}: there are {len(files)} files")
     if len(tone_files) != len(files):
         raise click.UsageError(f"{len(files)} files of strokes need as many --tone, not {len(tone_files)}")
-    only_one_standard_input(*files, *tone_files, *ink_files)
+    read = (*files, *tone_files, *ink_files)
+    only_one_standard_input(*read)
     if correct and gamma != 1.0:
         raise click.UsageError("--correct does not go with --gamma: the tone is the one that is blasted")
+    targets = [output] if pattern is None else [*names_of(pattern, len(files), output, read)]
     workers = threads or processors()
-    made = _balanced(files, tone_files, gamma, ink_files, max_pixels, workers, quiet, correct)[plate - 1]
-    with writing(output, binary=correct) as out:
-        if isinstance(made, Strokes):
-            strokes.write(out, made)
-        else:
-            pgm.write(out, GreyImage.from_grey(1.0 - made))
+    made = _balanced(files, tone_files, gamma, ink_files, max_pixels, workers, quiet, correct)
+    for one, target in zip(made if plate is None else [made[plate - 1]], targets, strict=True):
+        with writing(target, binary=correct) as out:
+            if isinstance(one, Strokes):
+                strokes.write(out, one)
+            else:
+                pgm.write(out, GreyImage.from_grey(1.0 - one))
 
 
 def _balanced(
@@ -102,25 +103,15 @@ def _balanced(
     workers: int, quiet: bool, correct: bool,
 ) -> list[Strokes] | list[Floats]:  # fmt: skip
     """The strokes of all files, balanced, or their tones corrected."""
-    global _made  # noqa: PLW0603
-    contents = []
-    for path in (*files, *tone_files, *ink_files):
-        with reading(path) as stream:
-            contents.append(stream.read())
-    key = contents, len(files), gamma, max_pixels, correct
-    if _made is not None and _made[0] == key:
-        return _made[1]
     from penink_cli.blasting.balancing import ROUNDS, Plate, balanced, corrected
-    from penink_cli.formats import pgm, strokes
     from penink_cli.ground.codes import of_code
     from penink_cli.ground.model import Strokes
     from penink_cli.illustration.drawing import tone_curve
     from penink_cli.options.progress import progress
 
     n = len(files)
-    named = list(zip((*files, *tone_files, *ink_files), map(io.BytesIO, contents), strict=True))
-    drawn = [strokes.read(stream, source_name(path)) for path, stream in (*named[:n], *named[2 * n :])]
-    greys = [pgm.read(stream, source_name(path), max_pixels) for path, stream in named[n : 2 * n]]
+    drawn = read_layers((*files, *ink_files))
+    greys = [read_grey(path, max_pixels) for path in tone_files]
     check_area(drawn[0].width, drawn[0].height, max_pixels)
     for path, layer in zip((*files, *ink_files), drawn, strict=True):
         if max(abs(layer.width - drawn[0].width), abs(layer.height - drawn[0].height)) > SAME_PT:
@@ -135,8 +126,6 @@ def _balanced(
         for i, (layer, grey) in enumerate(zip(drawn[:n], greys, strict=True))
     ]
     if correct:
-        _made = key, corrected(plates, drawn[0].device_dpi, workers)
-        return _made[1]
+        return corrected(plates, drawn[0].device_dpi, workers)
     with progress(ROUNDS, "balancing", quiet) as more:
-        _made = key, balanced(plates, drawn[0].device_dpi, workers, lambda: more(1))
-    return _made[1]
+        return balanced(plates, drawn[0].device_dpi, workers, lambda: more(1))

@@ -128,6 +128,13 @@ def composition_options(function: F) -> F:
 @click.option("--width", type=LENGTH, required=True, help="Width of the drawing that it is composed for: 6in, 100mm.")
 @composition_options
 @click.option(
+    "--color",
+    "--colour",
+    "in_colours",
+    is_flag=True,
+    help="Write a PPM: the photo's colours, as light as the grey. The mix is luma unless --mix says otherwise.",
+)
+@click.option(
     "--dpi",
     type=Finite(1, 100_000),
     default=288.0,
@@ -151,6 +158,7 @@ def compose(
     target: tuple[tuple[float, float], ...],
     mask: str | None,
     vignette: float | None,
+    in_colours: bool,
     dpi: float,
     maxval: int,
     threads: int | None,
@@ -162,6 +170,8 @@ def compose(
     A photo's tones drawn as they are make a dark grey drawing. Here colours are mixed so that they differ, tones
     are moved towards an illustrator's, who spends paper and black, and detail is raised until a pen can show it.
 
+    With --color they are colours, for plates of several inks.
+
     \b
     penink compose --width 6in photo.jpg -o g.pgm
     penink detect-edges g.pgm -o e.json
@@ -169,7 +179,7 @@ def compose(
     """
     from penink_cli.composition import compose as composition
     from penink_cli.formats import pgm, photo
-    from penink_cli.ground.model import GreyImage
+    from penink_cli.ground.model import ColourImage, GreyImage
 
     only_one_standard_input(file, mask)
     picture = read_colours(file, max_pixels)
@@ -180,14 +190,16 @@ def compose(
     used = composition.narrow_range(picture)
     if used is not None and strength > 0:
         warn(f"the photo uses {used:.0%} of the range of grey; what is drawn of it may be its noise")
-    grey = composition.compose(
-        picture,
-        choice,
-        photo.grey_of,
-        where,
-        oval=vignette is not None and where is None,
-        threads=threads or processors(),
-        report=reporter(verbose),
-    )
+    told: dict[str, Any] = {
+        "mask": where,
+        "oval": vignette is not None and where is None,
+        "threads": threads or processors(),
+        "report": reporter(verbose),
+    }
+    composed: ColourImage | GreyImage
+    if in_colours:
+        composed = ColourImage.from_colours(composition.compose_colours(picture, choice, **told), maxval)
+    else:
+        composed = GreyImage.from_grey(composition.compose(picture, choice, photo.grey_of, **told), maxval)
     with writing(output) as out:
-        pgm.write(out, GreyImage.from_grey(grey, maxval))
+        pgm.write(out, composed)

@@ -128,9 +128,9 @@ def draw(
     done. With --watch the drawing follows its photo, and the style, texture, mask or strokes given as files, until it
     is interrupted; only what has changed is made anew, and a page reloads itself in the browser.
 
-    With --inks it is drawn in colours, a plate an ink, whose tones are the photo's; lines are the
-    darkest ink's, and the texture is crosshatch unless another is named. Plates are drawn twice, so that
-    together they have the photo's colours (see penink balance).
+    With --inks it is drawn in colours, a plate an ink. They are the photo's, unless --strength, --detail, --target,
+    --mask or --style says how they are composed. Lines are the darkest ink's, and the texture is crosshatch unless
+    another is named. Plates are drawn twice, so that together they have the right colours (see penink balance).
 
     \b
     penink draw photo.jpg -o photo.pdf

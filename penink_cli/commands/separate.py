@@ -18,6 +18,7 @@ from penink_cli.options.inputs import (
     read_photo,
     warn_of_another_shape,
 )
+from penink_cli.options.plates import names_of, plates_option
 
 
 class Range(click.ParamType):
@@ -58,6 +59,7 @@ class Range(click.ParamType):
     metavar="NAME|N|COLOUR",
     help="The plate of one ink: cyan, magenta, yellow, black; with --inks its colour or its place there, from 1.",
 )
+@plates_option
 @inks_options
 @click.option("--invert", is_flag=True, help="All but that; the tones of the two overlays add up to the photo's.")
 def separate(
@@ -69,6 +71,7 @@ def separate(
     points: tuple[tuple[float, float], ...],
     edges_file: str | None,
     plate: str | None,
+    pattern: str | None,
     inks: Inks | None,
     paper_colour: tuple[float, float, float],
     black: float,
@@ -85,25 +88,32 @@ def separate(
 
     \b
     penink separate keys.png --plate cyan -o cyan.pgm
-    penink separate keys.png --inks '#1b4f9c,#d2232a,#f2c300' --plate 1 -o blue.pgm
+    penink separate keys.png --inks '#1b4f9c,#d2232a,#f2c300' --plates 'plate-{}.pgm'
     penink separate keys.png --mask keys-mask.png -o keys.pgm
     penink separate keys.png --mask keys-mask.png --invert -o shadow.pgm
     """
     from penink_cli.formats import pgm
     from penink_cli.illustration import overlays
 
-    if (mask is not None) + (grey is not None) + bool(points) + (plate is not None) != 1:
-        raise click.UsageError("give one of --mask, --grey, --point and --plate")
-    if plate is None:
+    of_inks = (plate is not None) + (pattern is not None)
+    if (mask is not None) + (grey is not None) + bool(points) + of_inks != 1:
+        raise click.UsageError("give one of --mask, --grey, --point, --plate and --plates")
+    if not of_inks:
         refuse_without_plate()
     if bool(points) != (edges_file is not None):
         raise click.UsageError("--point and --edges go together")
     only_one_standard_input(file, mask, edges_file)
-    if plate is not None:
-        number = (inks or CMYK).number(plate)
-        overlay = separated(file, max_pixels, inks or CMYK, paper_colour, black)[number]
-        with writing(output) as out:
-            pgm.write(out, inverted(overlay) if invert else overlay)
+    if of_inks:
+        chosen = inks or CMYK
+        if pattern is not None:
+            targets: list[str | None] = [*names_of(pattern, len(chosen.names), output, [file])]
+            numbers = list(range(len(targets)))
+        else:
+            targets, numbers = [output], [chosen.number(plate or "")]
+        overlays_of = separated(file, max_pixels, chosen, paper_colour, black)
+        for number, target in zip(numbers, targets, strict=True):
+            with writing(target) as out:
+                pgm.write(out, inverted(overlays_of[number]) if invert else overlays_of[number])
         return
     photo = read_photo(file, max_pixels)
     if mask is not None:

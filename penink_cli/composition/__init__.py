@@ -1,9 +1,10 @@
-"""From a photograph to the grey that a drawing of it is made from.
+"""From a photograph to the grey, or the colours, that a drawing of it is made from.
 
 compose.compose
   mixing     rims left out; red, green and blue weighed for contrast
   relief     a base of broad tones, and the detail upon it
   exposure   the base moved towards an illustrator's tones
+  recolouring  the photograph's colours at the grey's lightness, for a drawing in several inks
   filters    what these smooth and shrink by
 separation   the plates of several inks: how much of each, and how its hatching is turned (turns)
 """

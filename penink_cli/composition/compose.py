@@ -10,12 +10,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from penink_cli.arrangement.gradient import noise_level
-from penink_cli.composition import exposure, mixing, relief
+from penink_cli.composition import exposure, mixing, recolouring, relief
 from penink_cli.composition.filters import Picture, blurred, looked_up, shrunk
 from penink_cli.ground.errors import ParameterError
 from penink_cli.ground.model import ColourImage, GreyImage
@@ -82,26 +82,72 @@ def compose(
 
     Raises ParameterError for a mask of another size.
     """
-    if mask is not None and mask.values.shape != photo.values.shape[:2]:
-        (h, w), (rows, columns) = photo.values.shape[:2], mask.values.shape
-        raise ParameterError(f"the mask has {columns} x {rows} pixels; the photo has {w} x {h}")
     width, height = working_size(photo.values.shape, choice.width_pt, choice.pixels_per_pt)
     pt = width / choice.width_pt
-    fade = _fade(mask, width, height, choice.fade_pt * pt, oval, threads)
+    fade = _checked_fade(photo, mask, width, height, choice.fade_pt * pt, oval, threads)
     stored: Picture | None = None
     if choice.strength < _WHOLE_FROM:
         plain = luma(photo) if isinstance(photo, ColourImage) else photo
         stored = _sized(plain, width, height, threads)
     result = stored
     if choice.strength > 0:
-        values = mixing.without_rim(photo.values, photo.maxval)
-        if values is not photo.values:
-            report("a rim along the frame is left out")
-        composed = _composed(_scaled(values, photo.maxval, width, height, threads), choice, pt, fade, threads, report)
+        colours = _framed(photo, width, height, threads, report)
+        composed = _composed(colours, choice, pt, fade, threads, report)
         part = min(1.0, choice.strength / _WHOLE_FROM)
         result = composed if stored is None else stored + np.float32(part) * (composed - stored)
     assert result is not None
     return result if fade is None else 1 - (1 - result) * fade
+
+
+def compose_colours(
+    photo: GreyImage | ColourImage,
+    choice: Choice,
+    mask: GreyImage | None = None,
+    *,
+    oval: bool = False,
+    threads: int = 1,
+    report: Callable[[str], None] = lambda line: None,
+) -> Picture:
+    """Colours (h, w, 3), 0 … 1, of `working_size`: the photo's, as light as the composed grey.
+
+    mask, oval, report: as `compose` has them. The grey that no mix is chosen for is luma. Raises as `compose` does.
+    """
+    width, height = working_size(photo.values.shape, choice.width_pt, choice.pixels_per_pt)
+    pt = width / choice.width_pt
+    fade = _checked_fade(photo, mask, width, height, choice.fade_pt * pt, oval, threads)
+    if choice.strength > 0:
+        colours = _framed(photo, width, height, threads, report)
+        by = choice if choice.mix is not None else replace(choice, mix=recolouring.LUMA)
+        grey = _composed(colours, by, pt, fade, threads, report)
+        colours = recolouring.recoloured(_in_three(colours), grey, min(1.0, choice.strength / _WHOLE_FROM))
+    else:
+        colours = _in_three(_scaled(photo.values, photo.maxval, width, height, threads))
+    return colours if fade is None else 1 - (1 - colours) * fade[..., None]
+
+
+def _in_three(picture: Picture) -> Picture:
+    """Grey as red, green and blue."""
+    return picture if picture.ndim == 3 else np.repeat(picture[..., None], 3, axis=2)
+
+
+def _framed(
+    photo: GreyImage | ColourImage, width: int, height: int, threads: int, report: Callable[[str], None]
+) -> Picture:
+    """Values 0 … 1 at the working size, without a rim."""
+    values = mixing.without_rim(photo.values, photo.maxval)
+    if values is not photo.values:
+        report("a rim along the frame is left out")
+    return _scaled(values, photo.maxval, width, height, threads)
+
+
+def _checked_fade(
+    photo: GreyImage | ColourImage, mask: GreyImage | None, width: int, height: int, soft: float, oval: bool,
+    threads: int,
+) -> Picture | None:  # fmt: skip
+    if mask is not None and mask.values.shape != photo.values.shape[:2]:
+        (h, w), (rows, columns) = photo.values.shape[:2], mask.values.shape
+        raise ParameterError(f"the mask has {columns} x {rows} pixels; the photo has {w} x {h}")
+    return _fade(mask, width, height, soft, oval, threads)
 
 
 def _composed(

@@ -18,7 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from penink_cli.ground.errors import FormatError, LimitError, in_quotes
-from penink_cli.ground.model import GreyImage
+from penink_cli.ground.model import ColourImage, GreyImage
 
 if TYPE_CHECKING:
     from penink_cli.ground.streams import Output
@@ -241,25 +241,25 @@ def _without_comments(text: bytes, comment: bool) -> tuple[bytes, bool]:
         comment = True
 
 
-def header(width: int, height: int, maxval: int) -> bytes:
-    """The header of a P5 image of width × height pixels.
+def header(width: int, height: int, maxval: int, magic: bytes = b"P5") -> bytes:
+    """The header of an image of width × height pixels.
 
     >>> header(640, 480, 255)
     b'P5\\n640 480\\n255\\n'
     """
-    return b"P5\n%d %d\n%d\n" % (width, height, maxval)
+    return b"%s\n%d %d\n%d\n" % (magic, width, height, maxval)
 
 
 def rows(values: npt.NDArray[np.integer], maxval: int) -> memoryview:
-    """Raster bytes of one or more rows: (k, w) values from 0 to maxval."""
+    """Raster bytes of one or more rows: (k, w) or (k, w, 3) values from 0 to maxval."""
     stored = np.ascontiguousarray(values, np.uint8 if maxval < 256 else np.dtype(">u2"))
     return stored.view(np.uint8).reshape(-1).data
 
 
-def write(out: Output, image: GreyImage) -> None:
-    """Write an image as P5, by bands."""
-    height, width = image.values.shape
-    out.write(header(width, height, image.maxval))
+def write(out: Output, image: GreyImage | ColourImage) -> None:
+    """Write an image as P5, one in colours as P6, by bands."""
+    height, width = image.values.shape[:2]
+    out.write(header(width, height, image.maxval, b"P5" if image.values.ndim == 2 else b"P6"))
     band = max(1, BAND // width)
     for top in range(0, height, band):
         out.write(rows(image.values[top : top + band], image.maxval))

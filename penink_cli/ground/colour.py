@@ -31,11 +31,30 @@ XYZ = (
     (0.019334 / 1.088754, 0.119193 / 1.088754, 0.950227 / 1.088754),
 )
 
+#: And back.
+RGB = (
+    (3.079934935533, -1.537151516271, -0.542783419262),
+    (-0.921234182754, 1.87599000149, 0.045244181264),
+    (0.052889682046, -0.204041338367, 1.151151656321),
+)
+
 
 def lab_of_light(light: Floats) -> Floats:
     """Lab (…, 3) of linear sRGB (…, 3)."""
     x, y, z = (root(r * light[..., 0] + g * light[..., 1] + b * light[..., 2]) for r, g, b in XYZ)
     return np.stack([116 * y - 16, 500 * (x - y), 200 * (y - z)], axis=-1)
+
+
+def light_of_lab(lab: Floats) -> Floats:
+    """Linear sRGB (…, 3) of Lab (…, 3): below 0 or above 1 where there is no such light."""
+    middle = (lab[..., 0] + 16) / 116
+    x, y, z = (_cube(f) for f in (middle + lab[..., 1] / 500, middle, middle - lab[..., 2] / 200))
+    return np.stack([a * x + b * y + c * z for a, b, c in RGB], axis=-1)
+
+
+def _cube(f: Floats) -> Floats:
+    """What `root` is of."""
+    return np.where(f > 6 / 29, f * f * f, (116 * f - 16) * (27 / 24389))
 
 
 def root(t: Floats) -> Floats:

@@ -15,7 +15,7 @@ from penink_cli.options.common import Finite
 from penink_cli.options.layers import COLOUR
 
 if TYPE_CHECKING:
-    from penink_cli.ground.model import ColourImage, GreyImage
+    from penink_cli.ground.model import GreyImage
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -114,26 +114,20 @@ def refuse_without_plate() -> None:
     context = click.get_current_context()
     for name, word in (("inks", "inks"), ("paper_colour", "paper-color"), ("black", "black")):
         if context.get_parameter_source(name) is not ParameterSource.DEFAULT:
-            raise click.UsageError(f"--{word} goes with --plate")
-
-
-_made: tuple[Any, list[GreyImage]] | None = None  # the plates of the last photograph: one call of `draw` wants each
+            raise click.UsageError(f"--{word} goes with --plate and --plates")
 
 
 def separated(file: str | None, max_pixels: int, inks: Inks, paper: Colour, black: float) -> list[GreyImage]:
     """The plate of each ink: grey that is white where there is none of it."""
-    global _made  # noqa: PLW0603
+    from penink_cli.composition import separation
+    from penink_cli.ground.model import GreyImage as Grey
     from penink_cli.options.inputs import read_colours
 
-    photo: ColourImage | GreyImage = read_colours(file, max_pixels)
-    key = photo, inks, paper, black
-    if _made is None or _made[0][0] is not photo or _made[0][1:] != key[1:]:
-        from penink_cli.composition import separation
-        from penink_cli.ground.model import GreyImage as Grey
-
-        found = separation.amounts(photo.values, photo.maxval, inks.colours, paper, black)
-        _made = key, [Grey.from_grey(1.0 - amount) for amount in found]
-    return _made[1]
+    photo = read_colours(file, max_pixels)
+    return [
+        Grey.from_grey(1.0 - amount)
+        for amount in separation.amounts(photo.values, photo.maxval, inks.colours, paper, black)
+    ]
 
 
 def inverted(plate: GreyImage) -> GreyImage:

@@ -145,11 +145,17 @@ def test_the_filter_writes_one_plate(tmp_path, penink, plates):
     assert not np.array_equal(after.widths, before.widths)
     done = penink("balance", "--plate", "1", "--correct", *words, cwd=tmp_path)
     assert done.stdout.startswith(b"P5\n216 216\n255\n")
+    done = penink("balance", "--plates", "all-{}.jsonl", *words, cwd=tmp_path)
+    assert done.returncode == 0 and len(list(tmp_path.glob("all-*.jsonl"))) == len(plates)
+    assert (tmp_path / "all-2.jsonl").read_bytes() == (tmp_path / "b.jsonl").read_bytes()
 
 
 @pytest.mark.parametrize(
     ("change", "status", "said"),
     [
+        ([], 2, "give one of --plate and --plates"),
+        (["--plates", "0.jsonl"], 2, "has no {} for the number"),
+        (["--plates", "{}.pgm"], 1, "which it would overwrite"),
         (["--plate", "4"], 2, "there are 3 files"),
         (["--plate", "1", "--tone", "0.pgm"], 2, "3 files of strokes need as many --tone, not 4"),
         (["--plate", "1", "--correct", "--gamma", "2"], 2, "--correct does not go with --gamma"),

@@ -10,8 +10,8 @@ import skimage.color
 import skimage.data
 from scipy.ndimage import gaussian_filter
 
-from penink_cli.composition import exposure, filters, mixing
-from penink_cli.composition.compose import Choice, compose, narrow_range, working_size
+from penink_cli.composition import exposure, filters, mixing, recolouring
+from penink_cli.composition.compose import Choice, compose, compose_colours, narrow_range, working_size
 from penink_cli.formats import pgm, photo
 from penink_cli.ground.errors import ParameterError
 from penink_cli.ground.model import ColourImage, GreyImage
@@ -45,6 +45,47 @@ def test_a_step_has_no_halo(low, high, pixels_per_pt):
         far = np.median(side[40 * pixels_per_pt : 60 * pixels_per_pt])
         assert np.abs(side[2 * pixels_per_pt : 40 * pixels_per_pt] - far).max() <= 0.02
     assert rows[middle + 3 * pixels_per_pt] - rows[middle - 3 * pixels_per_pt] > 0.3  # and is a step still
+
+
+def in_colours(values: np.ndarray, mask: np.ndarray | None = None, threads: int = 1, **choice: object) -> np.ndarray:
+    image = ColourImage(values) if values.ndim == 3 else GreyImage(values)
+    return compose_colours(image, Choice(432.0, **choice), None if mask is None else GreyImage(mask), threads=threads)
+
+
+@pytest.mark.parametrize("name", ["astronaut", "coffee", "chelsea"])
+def test_colours_are_as_light_as_the_grey_and_keep_their_hue(name):
+    values = getattr(skimage.data, name)()[::2, ::2, :3]
+    found, grey = in_colours(values), composed(values, mix=recolouring.LUMA)
+    lab, own = skimage.color.rgb2lab(found), skimage.color.rgb2lab(values)
+    assert np.abs(lab[..., 0] - skimage.color.rgb2lab(np.dstack([grey] * 3))[..., 0]).max() < 0.5
+    chroma, before = np.hypot(lab[..., 1], lab[..., 2]), np.hypot(own[..., 1], own[..., 2])
+    seen = (chroma > 4) & (before > 4)
+    assert seen.mean() > 0.2
+    turn = np.arctan2(lab[..., 2], lab[..., 1]) - np.arctan2(own[..., 2], own[..., 1])
+    assert np.abs((turn[seen] + np.pi) % (2 * np.pi) - np.pi).max() < 0.1
+    growth = np.sqrt(np.maximum(lab[..., 0], 1) / np.maximum(own[..., 0], 1))
+    assert (chroma <= before * growth + 1).all()
+    full = (found > 0.02).all(axis=-1) & (found < 0.98).all(axis=-1)  # all of it where such a colour exists
+    assert np.abs(chroma - before * growth)[full].max() < 0.7
+
+
+def test_colours_at_strength_0_are_the_photos_and_outside_a_mask_white():
+    values = skimage.data.astronaut()[::4, ::4]
+    assert np.array_equal(ColourImage.from_colours(in_colours(values, strength=0.0)).values, values)
+    mask = np.zeros(values.shape[:2], np.uint8)
+    mask[:, :60] = 255
+    found = in_colours(values, mask)
+    assert (found[:, 60:] == 1).all()
+    assert found[:, :60].min() < 0.1
+
+
+def test_a_grey_photos_colours_are_grey_and_any_threads_do():
+    grey = skimage.data.camera()[::3, ::3]
+    found = in_colours(grey)
+    assert np.abs(found[..., 0] - found[..., 2]).max() < 0.005
+    assert np.abs(found[..., 1] - composed(grey)).max() < 0.01
+    colours = skimage.data.coffee()[::2, ::2]
+    assert np.array_equal(in_colours(colours), in_colours(colours, threads=3))
 
 
 @pytest.mark.parametrize("name", ["astronaut", "camera", "rocket"])

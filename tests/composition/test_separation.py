@@ -114,9 +114,25 @@ def test_plates_by_name_place_and_colour(tmp_path, penink):
     assert (inverse.values + plate.values == 255).all()
 
 
+def test_all_plates_in_one_call_are_those_of_one_each(tmp_path, penink):
+    path = photo(tmp_path)
+    done = penink("separate", "--plates", "p{}.pgm", path, cwd=tmp_path)
+    assert done.returncode == 0 and not done.stdout
+    assert sorted(file.name for file in tmp_path.glob("*.pgm")) == [f"p{i}.pgm" for i in (1, 2, 3, 4)]
+    for i in (1, 2, 3, 4):
+        assert (tmp_path / f"p{i}.pgm").read_bytes() == penink("separate", "--plate", str(i), path).stdout
+    (tmp_path / "photo1.png").write_bytes((tmp_path / "photo.png").read_bytes())
+    over = penink("separate", "--plates", "photo{}.png", "photo1.png", cwd=tmp_path)
+    assert over.returncode == 1 and b"which it would overwrite" in over.stderr
+
+
 @pytest.mark.parametrize(
     ("options", "said"),
     [
+        (["--plates", "p.pgm"], "has no {} for the number"),
+        (["--plates", "{}{}.pgm"], "has no {} for the number"),
+        (["--plates", "p{}.pgm", "-o", "a.pgm"], "-o has no use"),
+        (["--plates", "p{}.pgm", "--plate", "1"], "give one of"),
         (["--plate", "green"], "the inks are cyan, magenta, yellow, black, or 1 to 4"),
         (["--plate", "5"], "the inks are cyan"),
         (["--inks", "red", "--plate", "1"], "2 to 6 colours"),
@@ -149,6 +165,8 @@ def test_draw_in_inks_is_the_chain_it_prints(tmp_path, penink):
     assert (tmp_path / "again.svg").read_bytes() == (tmp_path / "drawn.svg").read_bytes()
     header = json.loads((tmp_path / "3-hatching.jsonl").read_text().splitlines()[0])
     assert (header["color"], header["layer"]) == ("#f2c300", "#f2c300")
+    plain = [line for line in drawn.stderr.decode().splitlines() if "--color" in line and "compose" in line]
+    assert not plain  # the photo's own colours
     packed = penink("draw", "--inks", "cmyk", "--width", "1in", path, "-o", str(tmp_path / "drawn.penink"))
     assert packed.returncode == 0, packed.stderr
     import zipfile
@@ -157,6 +175,26 @@ def test_draw_in_inks_is_the_chain_it_prints(tmp_path, penink):
         layers = json.loads(archive.read("illustration.json"))["layers"]
     assert [layer["name"] for layer in layers] == ["yellow", "cyan", "magenta", "black"]
     assert len({layer["edges"] for layer in layers}) == 1
+
+
+@pytest.mark.parametrize("options", [("--strength", "0.6"), ("--style", "house"), ("--mask", "mask.png")])
+def test_plates_are_composed_where_the_call_says_how(tmp_path, penink, options):
+    y, x = np.mgrid[0:60, 0:80]
+    Image.fromarray(np.dstack([2 * x + 40, 3 * y, 90 + 0 * x]).astype(np.uint8)).save(tmp_path / "photo.png")
+    Image.fromarray(np.where(x < 40, 255, 0).astype(np.uint8)).save(tmp_path / "mask.png")
+    call = ("draw", "--inks", "cmyk", "--width", "1in", *options, "photo.png", "-v", "--as", "png", "-o", "a.png")
+    done = penink(*call, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    composing = next(line for line in done.stderr.decode().splitlines() if "compose --color" in line)
+    import shlex
+
+    assert penink(*shlex.split(composing)[1:], cwd=tmp_path).returncode == 0
+    colours = np.asarray(Image.open(tmp_path / "colours.ppm"))
+    assert colours.shape == (60, 80, 3)
+    if "--mask" in options:
+        assert (colours[:, 42:] == 255).all()
+        assert np.asarray(Image.open(tmp_path / "a.png"))[:, 82:].min() > 200
+    assert np.abs(colours.astype(int) - np.asarray(Image.open(tmp_path / "photo.png"))).mean() > 10
 
 
 @pytest.mark.parametrize(("width", "sides"), [("1.3in", (97, 61)), ("101pt", (61, 97))])

@@ -46,3 +46,9 @@ class ColourImage:
 
     values: npt.NDArray[np.uint8] | npt.NDArray[np.uint16]
     maxval: int = 255
+
+    @classmethod
+    def from_colours(cls, colours: npt.NDArray[np.floating], maxval: int = 255) -> ColourImage:
+        """The nearest levels, half up, to colours (h, w, 3) 0 … 1."""
+        levels = np.floor(np.clip(colours, 0, 1) * maxval + 0.5)
+        return cls(levels.astype(np.uint8 if maxval < 256 else np.uint16), maxval)
