@@ -26,8 +26,16 @@ BESIDE_PT = 3.0
 #: Whether it is black is told by the tone under a Gaussian of σ SMOOTH_PT. Where the tone falls below LIGHT within
 #: FALLS_PT, black ends where half of the fall is done.
 SMOOTH_PT, LIGHT, FALLS_PT = 0.5, 0.6, 1.4
+#: What differs from the dark around (σ WIDE_PT, of what is darker than LIGHT alone) by no more than NOISE is grain or a
+#: shade of the same dark: black has no holes and no islands of it.
+WIDE_PT, NOISE = 3.0, 0.04
 #: The least area that is filled, square points; hatching draws the rest.
 LEAST_PT2 = 3.0
+#: Where the tone around is at least AROUND, black of less than BLOT_PT2 is a blot in the hatching, and hatching of less
+#: than FLECK_PT2 a fleck in the black. Nor is a dark thing filled here and there: of what is at most NEARLY less dark
+#: and hangs together at least SHARE is black, or all of it is hatched.
+AROUND, BLOT_PT2, FLECK_PT2 = 0.8, 40.0, 25.0
+NEARLY, SHARE = 0.04, 0.25
 #: The pen that fills. It is fine because rows may lie as far as its width from a border that runs along them.
 PEN_PT = 0.35
 
@@ -53,6 +61,8 @@ def solids(
         tone = resample(tone, h, w)
     px = w / width_pt
     smooth = blurred(tone.astype(np.float32), SMOOTH_PT * px, 1).astype(np.float64)
+    if everywhere:
+        smooth = _without_grain(smooth, px)
     core = smooth > black
     falls = (distance(smooth >= LIGHT) < FALLS_PT * px) & (distance(~core) < FALLS_PT * px)
     # how much darker a place is than what black begins with there, half way up or down where it does
@@ -63,12 +73,17 @@ def solids(
         value = np.where(near & falls, tone, value)  # smoothed, it would be smaller
     if light and not everywhere:
         value = np.where(resample(light.within(BESIDE_PT).astype(np.float64), h, w) > 0.5, value, 0.0)
+    if everywhere:
+        blots, flecks = _blots(smooth, core, black, px), _flecks(value, smooth, px)
+        value = np.where(flecks, np.nextafter(marks.LEVEL, 1), value)
     part, boxes = labelled(value > marks.LEVEL)
     count = len(boxes) + 1
     at = np.arange(h) * ink.shape[0] // h, np.arange(w) * ink.shape[1] // w
     drawn = np.bincount(part[ink[np.ix_(*at)] > marks.INKED], minlength=count)
     area, size = (np.bincount(p.ravel(), minlength=count) for p in (part[core], part))
     keep = (area >= LEAST_PT2 * px * px) & (drawn < marks.INKED * size)
+    if everywhere:
+        keep &= np.bincount(part[blots], minlength=count) < 0.5 * area
     keep[0] = False
     mine = distance(~keep[part]) < 1.5  # up to the places between which the border lies
     chains: list[Floats] = []
@@ -78,3 +93,40 @@ def solids(
         PEN_PT if pen_pt is None else pen_pt, gain_pt, chains, widths, pen_pt is not None,
     )  # fmt: skip
     return Strokes.of(width_pt, height_pt, chains, widths)
+
+
+def _without_grain(tone: Floats, px: float) -> Floats:
+    """The tone (h, w), in the dark as it is around but for what differs more than grain; px: pixels in a point.
+
+    Beside light things it stays as it is: they have borders of their own.
+    """
+    dark = distance(tone >= LIGHT) > FALLS_PT * px
+    share = blurred(dark.astype(np.float32), WIDE_PT * px, 1).astype(np.float64)
+    around = blurred((tone * dark).astype(np.float32), WIDE_PT * px, 1) / np.maximum(share, 1e-6)
+    differs = tone - around
+    return np.where(dark, around + np.sign(differs) * np.maximum(np.abs(differs) - NOISE, 0.0), tone)
+
+
+def _around(tone: Floats, px: float) -> marks.Mask:
+    """Where it is dark all around, (h, w)."""
+    return np.asarray(blurred(tone.astype(np.float32), WIDE_PT * px, 1) >= AROUND)
+
+
+def _blots(tone: Floats, core: marks.Mask, black: float, px: float) -> marks.Mask:
+    """The black in the dark that is too little of it to be filled, (h, w); core: where the tone exceeds `black`."""
+    of, boxes = labelled(core)
+    size = np.bincount(of.ravel(), minlength=len(boxes) + 1)
+    thing, boxes = labelled(tone > black - NEARLY)
+    whole = np.bincount(thing.ravel(), minlength=len(boxes) + 1)
+    dark = np.bincount(thing[core], minlength=len(boxes) + 1)
+    little = (size < BLOT_PT2 * px * px)[of] | (dark < SHARE * whole)[thing]
+    return np.asarray(core & little & _around(tone, px))
+
+
+def _flecks(value: Floats, tone: Floats, px: float) -> marks.Mask:
+    """Small dark holes in the black, which is where value exceeds the level, (h, w)."""
+    hole, boxes = labelled((value <= marks.LEVEL) & _around(tone, px))
+    little = np.bincount(hole.ravel(), minlength=len(boxes) + 1) < FLECK_PT2 * px * px
+    little[0] = False
+    little[hole[tone < AROUND]] = False
+    return np.asarray(little[hole])

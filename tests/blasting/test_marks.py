@@ -10,6 +10,7 @@ from penink_cli.blasting.blast import blast
 from penink_cli.blasting.light import LightThings
 from penink_cli.blasting.marks import marks
 from penink_cli.blasting.sheet import coverage
+from penink_cli.blasting.solids import solids
 from penink_cli.ground.masks import distance
 from penink_cli.ground.model import Floats, Strokes
 from penink_cli.options.textures import find_texture
@@ -133,3 +134,26 @@ def test_coarse_samples_and_the_sheet_s_rim_do_no_harm():
     tone[0, 0] = tone[9, 17] = 1.0
     drawn = blast(tone, SIDE, SIDE, None, find_texture("crosshatch"))
     assert np.isfinite(drawn.points).all()
+
+
+def _filled(tone: Floats) -> Floats:
+    """The part of 8 × 8 subpixels a point that solid black covers in the tone (144, 144)."""
+    return coverage(solids(tone, SIDE, SIDE, None, 0.0, np.zeros((75, 75), np.float32)), 8 * SIDE, 8 * SIDE)
+
+
+def test_grain_makes_neither_blots_in_hatching_nor_flecks_in_black():
+    grain = np.random.default_rng(1).normal(0.0, 0.08, (2 * SIDE, 2 * SIDE))  # half of it is left by the smoothing
+    assert _filled(np.clip(0.89 + grain, 0, 1)).mean() == 0
+    assert _filled(np.clip(0.99 + grain, 0, 1)).mean() > 0.99
+
+
+def test_a_fold_in_dark_cloth_is_filled_and_a_small_black_thing_on_grey():
+    x = np.arange(2 * SIDE)[None, :] * np.ones((2 * SIDE, 1))
+    fold = np.abs(x - SIDE) < 6
+    drawn = _filled(np.where(fold, 1.0, 0.8))
+    assert drawn[:, 8 * SIDE // 2].mean() > 0.95 and drawn[:, : 3 * SIDE].max() == 0
+    assert _filled(disc(6, ground=0.5)).sum() > 0.8 * 64 * np.pi * 9
+
+
+def test_a_hole_that_is_light_stays():
+    assert _filled(1 - disc(6))[4 * SIDE, 4 * SIDE] == 0
