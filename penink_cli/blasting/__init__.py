@@ -1,6 +1,7 @@
 """The paper's section 3: a grey image and a stroke texture to pen strokes of the same tone.
 
 blast.blast             what is to be drawn as a task.Task, for a rule of rules/
+  restoring               the tone of the photo given back to what was made sharper
   task.Begun              the sheet.Sheet with what is on it already
     telling                 telling lines: no second stroke along a dark one, none across a white one
     marks                   small dark things on bare paper, filled first

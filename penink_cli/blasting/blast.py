@@ -33,6 +33,7 @@ def blast(
     lines: Lines | None = None,
     swell: float = 0.0,
     natural_pt: float | None = None,
+    true: Floats | None = None,
     threads: int | None = None,
     tick: Callable[[], None] = lambda: None,
 ) -> Strokes:
@@ -49,6 +50,7 @@ def blast(
         among the outlines, hatching keeps clear.
     swell: how much strokes of a hatching or a set swell along their way where the tone does, see `pressure`.
     natural_pt: width of the picture at which a texture that grows with it has its own size; None for what that says.
+    true: (any size) an image of the same frame whose tone the drawing is to have, where `tone` is sharper but astray.
     tick: called now and then, `TICKS` times at the most.
 
     The width and density of strokes do not depend on the size of the sheet. Equal input gives equal strokes,
@@ -57,6 +59,10 @@ def blast(
     chosen = rules.rule(rule)
     if texture.oriented and not chosen.SETS:
         raise ParameterError(f"the texture {texture.name} is a set of strokes, for the rule best and not {rule}")
+    if true is not None:
+        from penink_cli.blasting.restoring import restored
+
+        tone = restored(tone, true, width_pt, height_pt, threads or 1)
     told = None
     if lines is not None:
         from penink_cli.blasting import telling  # needs the rooms of lines and composition
@@ -77,7 +83,8 @@ def left_over(
     """Tone (h, w) less the ink of the strokes on such a sheet, as the eye sees both: positive is too light."""
     sheet = Sheet(tone, width_pt, height_pt, 72.0 / device_dpi if device_dpi else 0.0, threads or 1)
     hatching.draw_first(sheet, strokes)
-    return resample(sheet.spread(sheet.error()).astype(np.float64), *tone.shape)
+    error = sheet.spread(sheet.error()).astype(np.float64)
+    return 2 * resample((error + 1) / 2, *tone.shape) - 1  # resample keeps to 0 … 1
 
 
 def too_dark(tone: Floats, darkest: float) -> float:

@@ -30,6 +30,8 @@ TOLERANCE_PT = 0.08
 EVEN_PT = 0.1
 #: Rounds in which the widths are corrected, and the most of a width that a round changes.
 ROUNDS, CORRECTION = 4, 0.3
+#: Errors are taken so many times: what a printer adds to a stroke does not swell with it, and strokes overlap.
+AGAINST = np.float32(1.5)
 #: Errors are held against the tone, or against this where the tone is less.
 SINGLE = 0.1
 
@@ -57,7 +59,7 @@ def swollen(sheet: Sheet, strokes: Strokes, tone: Floats, swell: float) -> Strok
         sheet.clear()
         _ink(sheet, drawn)
         seen = sheet.spread(sheet.error()) / sheet.spread(np.maximum(sheet.seen(sheet.tone), np.float32(SINGLE)))
-        correction = correction * (1 + np.clip(seen, np.float32(-CORRECTION), np.float32(CORRECTION)))
+        correction = correction * (1 + np.clip(AGAINST * seen, np.float32(-CORRECTION), np.float32(CORRECTION)))
     drawn = _simpler(strokes, drawn)
     sheet.clear()
     _ink(sheet, drawn)

@@ -23,9 +23,10 @@ def hatch(
     def hatched(greys: list[str], wanted: str) -> list[str]:
         drawn = []
         for plate, grey in zip(plates, greys):
+            true = ["--tone-of", plate.grey] if job.inks is None and grey != plate.grey else []
             ink = [word for name in over for word in ("--ink", name)] if plate is plates[-1] else []
             told = [*job.on_paper, *job.device, *job.words("blast", "blast"), *plate.words(), *along, *white, *ink]
-            drawn.append(job.run("blast", ["-e", edges, *told, grey], plate.named(wanted)))
+            drawn.append(job.run("blast", ["-e", edges, *told, *true, grey], plate.named(wanted)))
         return drawn
 
     if job.inks is None:

@@ -78,6 +78,13 @@ if TYPE_CHECKING:
     help="Strokes of hatching swell where the picture is darker than around; 1 by as much as it is.  [default: 0]",
 )
 @click.option(
+    "--tone-of",
+    "true_file",
+    type=click.Path(allow_dash=True),
+    metavar="FILE",
+    help="The PGM whose tone the drawing is to have, where the image to be drawn is a sharper one made of it.",
+)
+@click.option(
     "--directions",
     "directions_file",
     type=click.Path(allow_dash=True),
@@ -127,6 +134,7 @@ def blast(
     device_dpi: float | None,
     rule: str,
     swell: float,
+    true_file: str | None,
     directions_file: str | None,
     lines_file: str | None,
     ink_files: tuple[str, ...],
@@ -159,7 +167,7 @@ def blast(
     if (width is None) == (dpi is None):
         raise click.UsageError("give one of --width and --dpi")
     piped_texture = texture_name if texture_name == "-" else None
-    only_one_standard_input(file, edges_file, directions_file, lines_file, *ink_files, piped_texture)
+    only_one_standard_input(file, edges_file, true_file, directions_file, lines_file, *ink_files, piped_texture)
     texture = turned(finer_texture(find_texture(texture_name), finer, device_dpi), turn)
     edges = read_edges(edges_file, max_pixels)
     image = read_grey(file, max_pixels) if width is None else read_to_blast(file, max_pixels)
@@ -172,6 +180,7 @@ def blast(
     check_sheet(width_pt, height_pt, max_pixels)
     ink = read_layers(ink_files) if ink_files else []
     tone = tone_curve(image, gamma)
+    true = None if true_file is None else tone_curve(read_to_blast(true_file, max_pixels), gamma)
     for line in warnings(tone, texture, pen, device_dpi):
         warn(line)
     if directions and not find_rule(rule).follows(texture):
@@ -187,6 +196,7 @@ def blast(
             seed=seed,
             pen_pt=pen,
             natural_pt=natural,
+            true=true,
             device_dpi=device_dpi,
             rule=rule,
             outlines=Strokes.joined(ink) if ink else None,
