@@ -11,6 +11,9 @@ are long lines and not scattered dashes; it is laid as strokes of a hand's lengt
 little. Lines enter in the order of the reversed bits of their number, so that every prefix is spread
 evenly. Any other texture is one screen at angle 0 whose strokes are those of its tile.
 
+A texture that grows with the picture has one screen of strokes that are moved apart as much as the picture is larger,
+`at_size`, and their thresholds fall as the tile's area grows beside their length; screens of lines follow them.
+
 Thresholds are meant for one effective width of pen (what the device paints, its gain included), `PEN_PT`:
 a pen or a device that cannot paint so fine gets the pen and the tile magnified together.
 """
@@ -42,12 +45,13 @@ from penink_cli.blasting.constants import (
     WAY_STEPS,
     WIDENED,
 )
+from penink_cli.blasting.scaling import FILLS
 from penink_cli.blasting.tile import thresholds
 from penink_cli.ground import exact
 from penink_cli.ground.angles import direction
 from penink_cli.ground.errors import ParameterError
 from penink_cli.ground.median import median
-from penink_cli.ground.model import Floats, HatchLayer, Ints, Texture
+from penink_cli.ground.model import Floats, HatchLayer, Ints, Strokes, Texture
 
 Bytes = npt.NDArray[np.uint8]
 Integers = npt.NDArray[np.int32]
@@ -70,6 +74,8 @@ class Screen:
     layer: of a screen of lines, what a renderer makes it from.
     again: of a screen that repeats the first one's strokes, half a tile away, in what those leave bare: the tone from
         which on it does; else None.
+    spans: (s, 2) of a screen that grows, 16ths: each stroke is there where the tile is from so many to less than so
+        many times as large as by nature; enters are then 16ths of 255ths for a tile of that size. None for others.
     """
 
     angle: float
@@ -85,6 +91,7 @@ class Screen:
     widens: float
     layer: HatchLayer | None = None
     again: float | None = None
+    spans: Ints | None = None
 
     @property
     def control(self) -> Floats:
@@ -117,6 +124,7 @@ class ThresholdTable:
     pen_pt: effective width of the strokes.
     magnification: of pen and tile, for those who want another pen than the texture's own.
     whole: strokes are drawn whole or not at all.
+    fill: hatching of the tones that a tile which grows does not reach. least_pt: no side of that is smaller.
     """
 
     name: str
@@ -125,6 +133,8 @@ class ThresholdTable:
     pen_pt: float = PEN_PT
     magnification: float = 1.0
     whole: bool = False
+    fill: tuple[HatchLayer, ...] = ()
+    least_pt: float = 0.0
 
 
 def reversed_bits(k: int, bits: int = 8) -> int:
@@ -224,23 +234,9 @@ LATEST = 0.9
 def strokes(texture: Texture) -> Screen:
     """The screen of any other texture: the segments of its tile's strokes, on a grid of 1/4 pt."""
     tile = texture.strokes
-    pen = float(median(tile.widths)) + WIDENED
     enters = thresholds(texture, PIXEL)
-    points, limits, equal = [], [], []
-    for i in np.flatnonzero(enters <= LATEST).tolist():
-        stroke = tile[i]
-        segments = [np.repeat(stroke, 4, axis=0)] if len(stroke) == 1 else [
-            half for k in range(0, len(stroke) - 1, 3) for half in _short(stroke[k : k + 4])
-        ]  # fmt: skip
-        for segment in segments:
-            segment = segment - np.floor(segment[0] / (tile.width, tile.height)) * (tile.width, tile.height)
-            first = np.floor(segment[0] / GRID_PT + 0.5)
-            points.append((first + np.floor((segment - segment[0]) / GRID_PT + 0.5)) * GRID_PT)
-            limits.append(float(np.floor(enters[i] * 255)) / 255)
-            # whole strokes count with their round ends, runs without
-            equal.append(float(exact.length(points[-1][3] - points[-1][0])) + (0.785 * pen if texture.whole else 0.0))
-    control = np.array(points).reshape(-1, 4, 2)
-    at = np.array(limits)
+    control, source, equal = _segments(texture, tile, np.flatnonzero(enters <= LATEST))
+    at = np.floor(enters[source] * 255) / 255
     lengths = np.append(0, np.cumsum(equal)) / (tile.width * tile.height)
     reached = np.append(at, LATEST)
     knots = np.unique(np.searchsorted(reached, np.linspace(0, LATEST, 19)[1:]))
@@ -252,6 +248,83 @@ def strokes(texture: Texture) -> Screen:
         covers, np.diff(np.append(0, covers)) / np.diff(np.append(0, lengths[knots])),
         np.full(n, -1, np.int32), np.zeros(256, np.uint8), widening(control),
     )  # fmt: skip
+
+
+def _segments(texture: Texture, tile: Strokes, which: Ints) -> tuple[Floats, Ints, list[float]]:
+    """Cubics (s, 4, 2) of some strokes of a tile, which stroke each is of, and its length as ink counts it."""
+    pen = float(median(tile.widths)) + WIDENED
+    points, source, equal = [], [], []
+    for i in which.tolist():
+        stroke = tile[i]
+        segments = [np.repeat(stroke, 4, axis=0)] if len(stroke) == 1 else [
+            half for k in range(0, len(stroke) - 1, 3) for half in _short(stroke[k : k + 4])
+        ]  # fmt: skip
+        for segment in segments:
+            segment = segment - np.floor(segment[0] / (tile.width, tile.height)) * (tile.width, tile.height)
+            first = np.floor(segment[0] / GRID_PT + 0.5)
+            points.append((first + np.floor((segment - segment[0]) / GRID_PT + 0.5)) * GRID_PT)
+            source.append(i)
+            # whole strokes count with their round ends, runs without
+            equal.append(float(exact.length(points[-1][3] - points[-1][0])) + (0.785 * pen if texture.whole else 0.0))
+    return np.array(points).reshape(-1, 4, 2), np.array(source, np.int64), equal
+
+
+#: Strokes that come in where a tile is larger than so many times its own size are left to the hatching.
+LARGEST = 4
+#: Spans are kept in so many parts, thresholds of tiles that grow in so many of a 255th; the last span has no end.
+SPAN_PARTS, EVER = 16, 255
+
+
+def growing(texture: Texture) -> Screen:
+    """The strokes of a tile that grows, as they are where it has its own size.
+
+    They hardly overlap where it is large, so what they cover there is told, and goes with the inverse of the size.
+    """
+    scales = texture.scales
+    assert scales is not None
+    there = np.flatnonzero(scales.spans[:, 0] <= LARGEST)
+    tile = scales.strokes.taken(there)
+    width, height = texture.strokes.width, texture.strokes.height
+    large = replace(tile, points=tile.points * LARGEST, width=width * LARGEST, height=height * LARGEST)
+    covers = thresholds(replace(texture, strokes=large, priorities=scales.priorities[there], scales=None), PIXEL)
+    tile = replace(tile, width=width, height=height)
+    control, source, equal = _segments(texture, tile, np.arange(len(tile)))
+    spans = np.ceil(scales.spans[there][source] * SPAN_PARTS - 1e-6).clip(0, EVER).astype(np.int64)
+    at = np.floor(np.minimum(covers[source] * LARGEST * 255 * SPAN_PARTS, 65535.0))
+    # fresh ink of a point of length, where most have come
+    drawn = float(np.cumsum(equal)[-1]) / (tile.width * tile.height) if equal else 1.0
+    fresh = float(at[-1]) / 255 / SPAN_PARTS / drawn if equal else 0.0
+    n = len(control)
+    return Screen(
+        0.0, tile.width, tile.height, control.reshape(-1, 2), np.arange(n + 1) * 4, at,
+        np.array([1.0]), np.array([round(fresh, 4)]), np.full(n, -1, np.int32), np.zeros(256, np.uint8),
+        round(widening(control), 4), spans=spans,
+    )  # fmt: skip
+
+
+def at_size(table: ThresholdTable, scale: float, unit: float) -> ThresholdTable:
+    """The table for a picture so many times as large as it is by nature; unit: points, see `threshold`.
+
+    Of a texture that does not grow it is the table as it is.
+    """
+    tile = table.screens[0]
+    if tile.spans is None:
+        return table
+    scale = max(scale, table.least_pt / min(tile.width, tile.height))
+    by = scale / unit
+    parts = SPAN_PARTS * 1.001 * scale  # where the size is just that from which on a stroke is there, it is
+    there = np.flatnonzero((tile.spans[:, 0] <= parts) & ((tile.spans[:, 1] > parts) | (tile.spans[:, 1] == EVER)))
+    enters = (tile.enters[there] + 0.5) / (255 * SPAN_PARTS) / by
+    reached = min(float(enters[-1]), 1.0) if len(there) else 0.0
+    grown = replace(
+        tile, width=tile.width * by, height=tile.height * by, points=(tile.control[there] * by).reshape(-1, 2),
+        first=np.arange(len(there) + 1) * 4, enters=enters, line=tile.line[there], spans=None,
+    )  # fmt: skip
+    over = [
+        replace(layer, low=reached + (1 - reached) * layer.low, high=reached + (1 - reached) * layer.high)
+        for layer in table.fill
+    ]
+    return replace(table, screens=(grown, *(lines(layer, k) for k, layer in enumerate(over, 1))))
 
 
 def once_more(screen: Screen, low: float) -> Screen:
@@ -290,6 +363,11 @@ def table(texture: Texture, pen_pt: float | None = None) -> ThresholdTable:
     if not texture.layers:
         own = float(median(texture.strokes.widths)) + WIDENED
         magnification = (pen + WIDENED) / own
+        if texture.scales is not None and (texture.scales.spans[:, 0] <= LARGEST).any():
+            return ThresholdTable(
+                texture.name, (growing(texture),), give_way(), own, magnification, texture.whole,
+                FILLS[texture.scales.fill], texture.scales.least_pt,
+            )  # fmt: skip
         first = strokes(texture)
         return ThresholdTable(
             texture.name, (first, once_more(first, LATEST)), give_way(), own, magnification, texture.whole

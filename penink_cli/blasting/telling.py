@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from penink_cli.blasting.sheet import CELL_PT, coverage, resample
 from penink_cli.composition.filters import Picture, blurred
+from penink_cli.ground import pens
 from penink_cli.ground.model import Floats, Ints, LineChoice, Lines, Strokes
 from penink_cli.lines.choice import chosen
 from penink_cli.lines.strokes import line_strokes
@@ -30,8 +31,9 @@ def with_room(lines: Lines, width_pt: float, height_pt: float, tone: Picture, th
 
     tone: (h, w) of the photo. Light lines of which less than LEAST_SHOWN shows on it are left away.
     """
-    dark = chosen(lines, width_pt, height_pt, LineChoice())
-    light = chosen(lines, width_pt, height_pt, WHITE, white=True)
+    by = pens.part(width_pt)
+    dark = chosen(lines, width_pt / by, height_pt / by, LineChoice())
+    light = chosen(lines, width_pt / by, height_pt / by, WHITE, white=True)
     h, w = tone.shape
     around = blurred(tone, AROUND_PT * w / width_pt, threads)
     at = np.floor(lines.points * (w / lines.width, h / lines.height)).astype(np.int64)

@@ -18,9 +18,10 @@ import numpy.typing as npt
 from penink_cli.blasting import curves
 from penink_cli.blasting._compiled import threshold as _threshold
 from penink_cli.blasting.constants import BLOCK, LEAST_PIXELS, PIXEL, TAKEN_UP, WIDENED
-from penink_cli.blasting.screens import Screen, ThresholdTable, table
+from penink_cli.blasting.screens import Screen, ThresholdTable, at_size, table
 from penink_cli.blasting.sheet import resample
 from penink_cli.geometry import edge_index
+from penink_cli.ground import pens
 from penink_cli.ground.angles import direction
 from penink_cli.ground.model import EdgeList, Floats, Ints, Strokes, Texture
 
@@ -79,10 +80,11 @@ class Paper:
 
 
 def paper(
-    layers: Sequence[tuple[Texture, float | None]], width_pt: float, height_pt: float, dpi: float | None
-) -> Paper:
-    """A sheet for layers of these textures and pens."""
-    return Paper(width_pt, height_pt, BLOCK * max(_unit_of(texture, pen, dpi) for texture, pen in layers))
+    layers: Sequence[tuple[Texture, float | None]], width_pt: float, height_pt: float, dpi: float | None,
+    by: float = 1.0,
+) -> Paper:  # fmt: skip
+    """A sheet for layers of these textures and pens; by: the part of their width that textures' pens have."""
+    return Paper(width_pt, height_pt, BLOCK * max(_unit_of(texture, pen, dpi, by) for texture, pen in layers))
 
 
 def in_255ths(tone: Floats) -> Bytes:
@@ -121,7 +123,7 @@ def _looked(values: Bytes, shape: tuple[int, ...]) -> Bytes:
 
 def blast_by_threshold(
     tone: Floats, width_pt: float, height_pt: float, edges: EdgeList | None, texture: Texture, pen_pt: float | None,
-    device_dpi: float | None, outlines: Strokes | None = None,
+    device_dpi: float | None, outlines: Strokes | None = None, natural_pt: float | None = None,
 ) -> Strokes:  # fmt: skip
     """Strokes for a sheet of width_pt × height_pt, as `blast` describes them.
 
@@ -135,19 +137,21 @@ def blast_by_threshold(
     if outlines is not None:
         sheet.cover(outlines)
     ink = in_255ths(tone)
-    return blast_on(sheet, ink, ink, edges, texture, pen_pt, device_dpi)
+    return blast_on(sheet, ink, ink, edges, texture, pen_pt, device_dpi, natural_pt)
 
 
 def blast_on(
     sheet: Paper, ink: Bytes, total: Bytes, edges: EdgeList | None, texture: Texture, pen_pt: float | None,
-    device_dpi: float | None,
+    device_dpi: float | None, natural_pt: float | None = None, by: float = 1.0,
 ) -> Strokes:  # fmt: skip
-    """Strokes of one layer. ink, total: (m, n) as `add_up` has them."""
+    """Strokes of one layer. ink, total: (m, n) as `add_up` has them; natural_pt: as in `blast`; by: as in `paper`."""
     width_pt, height_pt = sheet.width_pt, sheet.height_pt
     sizes = table(texture, pen_pt)
     gain = 72.0 / device_dpi if device_dpi else 0.0
-    unit = _unit(sizes, pen_pt, gain)
-    n, m = grid(texture, pen_pt, device_dpi, width_pt, height_pt)
+    unit = _unit(sizes, pen_pt, device_dpi, by)
+    if texture.scales is not None:
+        sizes = at_size(sizes, width_pt / (natural_pt or texture.scales.natural_pt), unit)
+    n, m = grid(texture, pen_pt, device_dpi, width_pt, height_pt, by)
     squares = max(1, n // 4), max(1, m // 4)
     ends = np.zeros((0, 4))
     if edges is not None and len(edges.edges):
@@ -164,22 +168,24 @@ def blast_on(
 
 
 def grid(
-    texture: Texture, pen_pt: float | None, device_dpi: float | None, width_pt: float, height_pt: float
+    texture: Texture, pen_pt: float | None, device_dpi: float | None, width_pt: float, height_pt: float, by: float = 1.0
 ) -> tuple[int, int]:
     """How many values of tone a device wants, across and down: one a unit, which is about a point."""
-    unit = _unit_of(texture, pen_pt, device_dpi)
+    unit = _unit_of(texture, pen_pt, device_dpi, by)
     return max(1, math.floor(width_pt / unit + 0.5)), max(1, math.floor(height_pt / unit + 0.5))
 
 
-def _unit_of(texture: Texture, pen_pt: float | None, device_dpi: float | None) -> float:
-    return _unit(table(texture, pen_pt), pen_pt, 72.0 / device_dpi if device_dpi else 0.0)
+def _unit_of(texture: Texture, pen_pt: float | None, device_dpi: float | None, by: float) -> float:
+    return _unit(table(texture, pen_pt), pen_pt, device_dpi, by)
 
 
-def _unit(sizes: ThresholdTable, pen_pt: float | None, gain_pt: float) -> float:
-    """The magnification of pen and tile, in points, for a pen if one is given, on a device that widens it so."""
+def _unit(sizes: ThresholdTable, pen_pt: float | None, device_dpi: float | None, by: float) -> float:
+    """The magnification of pen and tile, in points, for a pen if one is given, on such a device."""
+    gain_pt = 72.0 / device_dpi if device_dpi else 0.0
     if pen_pt is not None:  # the table takes a printer of 600 dpi for granted
         return (pen_pt + gain_pt * WIDENED / PIXEL) / sizes.pen_pt
-    return max(sizes.magnification, LEAST_PIXELS * gain_pt / sizes.pen_pt)
+    pen = pens.finer(sizes.magnification * sizes.pen_pt - WIDENED, by, device_dpi)
+    return max((pen + WIDENED) / sizes.pen_pt, LEAST_PIXELS * gain_pt / sizes.pen_pt)
 
 
 def _within(points: Floats, stops: Ints, width: float, height: float, rim: float) -> tuple[Floats, Ints]:

@@ -31,16 +31,16 @@ def tone_curve(image: GreyImage, gamma: float) -> Floats:
 
 
 def enlarged(
-    samples: GreyImage, edges: EdgeList | None, size: tuple[int, int], threads: int | None, ease: bool = True
+    samples: GreyImage, edges: EdgeList | None, size: tuple[int, int], threads: int | None
 ) -> GreyImage:
     """Samples at the size that they are blasted at: half by the reconstruction, doubled by the separable filter.
 
-    ease: few grey levels are to show no stairs.
+    Few grey levels show no stairs.
     """
     from penink_cli.reconstruction.easing import eased
     from penink_cli.reconstruction.enlarge import bands
 
-    rows = bands(eased(samples, edges) if ease else samples, edges, *size, soften=True, maxval=255, threads=threads)
+    rows = bands(eased(samples, edges), edges, *size, soften=True, maxval=255, threads=threads)
     return GreyImage(np.concatenate(list(rows)).astype(np.uint8), 255)
 
 

@@ -1,7 +1,8 @@
-"""An illustration in at most so many bytes: coarser grids, fewer edges, lines and directions, all by one measure.
+"""An illustration in fewer bytes: coarser grids, fewer edges, lines and directions, all by one measure.
 
-The measure is the error that a drawing of the natural size may show. A chain of edges has to save so much more a bit
-as the square of that grows, lines and directions become fewer as it does; it is bisected.
+The measure is the error that a drawing may show at the size it is to be seen at, by default the natural one. A chain
+of edges has to save so much more a bit as the square of that grows, lines and directions become fewer as it does; it is
+bisected.
 """
 
 from __future__ import annotations
@@ -25,24 +26,32 @@ _LEAST_FIELD = 12
 
 
 def packed_within(
-    whole: Illustration, most: int, settle: Callable[[Illustration], Illustration], threads: int | None = None
-) -> bytes:
+    whole: Illustration, most: int | None, settle: Callable[[Illustration], Illustration], threads: int | None = None,
+    seen_at: float | None = None,
+) -> bytes:  # fmt: skip
     """The archive of an illustration, at the finest that keeps it within `most` bytes.
 
-    settle: brings an illustration to the precision it is kept at. Raises LimitError, which says the least possible.
+    settle: brings an illustration to the precision it is kept at. seen_at: width in points of the largest drawing to
+    be made of it; what that would not show is left out, whatever the bytes. Raises LimitError, which says the least
+    possible.
     """
+    width = seen_at or whole.width
     best = archive.pack(illustration.members(whole))
-    if len(best) <= most:
+    if seen_at is None and (most is None or len(best) <= most):
         return best
     pictures = [_picture(layer, threads) for layer in whole.layers]
 
     def packed(limit: float) -> bytes:
         layers = [
-            _coarser(layer, picture, limit, whole.width, threads)
+            _coarser(layer, picture, limit, width, width * whole.height / whole.width, threads)
             for layer, picture in zip(whole.layers, pictures, strict=True)
         ]
         return archive.pack(illustration.members(settle(replace(whole, layers=tuple(layers)))))
 
+    if seen_at is not None:
+        best = min(best, packed(USUAL), key=len)
+    if most is None or len(best) <= most:
+        return best
     best = packed(MOST)
     if len(best) > most:
         raise LimitError(f"{most} bytes are too few: the least possible is {len(best)}")
@@ -65,8 +74,11 @@ def _picture(layer: Layer, threads: int | None) -> GreyImage:
     return GreyImage(np.concatenate(list(rows)).astype(np.uint16), 65535)
 
 
-def _coarser(layer: Layer, picture: GreyImage, limit: float, width_pt: float, threads: int | None) -> Layer:
-    """The layer with no more than a drawing so wide needs to show errors within the limit, grey levels of 255."""
+def _coarser(
+    layer: Layer, picture: GreyImage, limit: float, width_pt: float, height_pt: float, threads: int | None
+) -> Layer:
+    """The layer with no more than a drawing of that size needs to show errors within the limit, levels of 255."""
+    from penink_cli.blasting import telling
     from penink_cli.reconstruction import extraction, grid, thinning
 
     edges = layer.edges or EdgeList(*picture.values.shape[::-1])
@@ -90,6 +102,7 @@ def _coarser(layer: Layer, picture: GreyImage, limit: float, width_pt: float, th
     if limit >= MOST:
         lines = field = None
     if lines is not None:
+        lines = lines.chosen(telling.with_room(lines, width_pt, height_pt, 1 - picture.grey, threads or 1))
         count = math.floor(len(lines) * min(1.0, USUAL / limit))
         lines = lines.chosen(np.argsort(-lines.rank, kind="stable")[:count])
     if field is not None:

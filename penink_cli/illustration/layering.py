@@ -97,10 +97,7 @@ def _on_one_sheet(
             told = lined(layer.lines, width_pt, height_pt, layer.line, device_dpi)
             drawn = Strokes.joined([drawn, told]) if len(drawn) else told
         outlines.append(drawn)
-    greys = [  # a device does not ease
-        enlarged(layer.samples, layer.edges, size, threads, ease=layer.rule != "threshold")
-        for layer in illustration.layers
-    ]
+    greys = [enlarged(layer.samples, layer.edges, size, threads) for layer in illustration.layers]
     best: tuple[int, list[Strokes]] | None = None
     extra: Floats | None = None
     left = _steps(illustration)
@@ -130,14 +127,14 @@ def _on_one_sheet(
 def _with_pens(layer: Layer, width_pt: float, device_dpi: float | None, pen_pt: float | None) -> Layer:
     """The layer with the one pen there is, or with pens that suit the size.
 
-    One that is hatched as by a device keeps its own: the device knows no other.
+    The texture of one that is hatched as by a device stays: such a one is magnified as its pen is.
     """
     outline = layer.outline
     if pen_pt is not None:
         outline = None if outline is None else replace(outline, pen_pt=pen_pt, even=True)
         return replace(layer, pen_pt=pen_pt, outline=outline, line=replace(layer.line, pen_pt=pen_pt, even=True))
     by = pens.part(width_pt)
-    if by == 1.0 or layer.rule == "threshold":
+    if by == 1.0:
         return layer
 
     def finer(pen_pt: float) -> float:
@@ -145,7 +142,7 @@ def _with_pens(layer: Layer, width_pt: float, device_dpi: float | None, pen_pt: 
 
     return replace(
         layer, pen_pt=None if layer.pen_pt is None else finer(layer.pen_pt),
-        texture=finer_texture(layer.texture, by, device_dpi),
+        texture=layer.texture if layer.rule == "threshold" else finer_texture(layer.texture, by, device_dpi),
         outline=None if outline is None else replace(outline, pen_pt=finer(outline.pen_pt)),
         line=replace(layer.line, pen_pt=finer(layer.line.pen_pt)),
     )  # fmt: skip
@@ -204,20 +201,21 @@ def _hatched_as_by_a_device(
     from penink_cli.reconstruction.enlarge import enlarge
     from penink_cli.selfdrawing.data import as_sent, family
 
-    layers = [illustration.layers[i] for i in numbers]
-    sheet = threshold.paper([(layer.texture, layer.pen_pt) for layer in layers], width_pt, height_pt, device_dpi)
+    layers, by = [illustration.layers[i] for i in numbers], pens.part(width_pt)
+    textures = [(layer.texture, layer.pen_pt) for layer in layers]
+    sheet = threshold.paper(textures, width_pt, height_pt, device_dpi, by)
     tones, edges = [], []
     for i, layer in zip(numbers, layers, strict=True):
         if len(outlines[i]):
             sheet.cover(outlines[i])
         samples, sent = as_sent(layer)
         h, w = samples.values.shape
-        n, m = threshold.grid(layer.texture, layer.pen_pt, device_dpi, width_pt, height_pt)
+        n, m = threshold.grid(layer.texture, layer.pen_pt, device_dpi, width_pt, height_pt, by)
         grey = enlarge(samples, sent, max(n, w), max(m, h), threads=threads)
         tones.append(threshold.in_255ths(tone_curve(grey, layer.gamma)))
         edges.append(sent)
     added = threshold.add_up(tones, [family(illustration, i) for i in numbers])
     return {
-        i: threshold.blast_on(sheet, *tone, sent, layer.texture, layer.pen_pt, device_dpi)
+        i: threshold.blast_on(sheet, *tone, sent, layer.texture, layer.pen_pt, device_dpi, illustration.width, by)
         for i, layer, tone, sent in zip(numbers, layers, added, edges, strict=True)
     }

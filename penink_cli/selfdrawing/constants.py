@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from penink_cli.blasting import constants, engraving, form, pen_lines, phase, shares, taking_turns
+from penink_cli.blasting import constants, engraving, form, pen_lines, phase, screens, shares, taking_turns
 from penink_cli.blasting import telling as beside
+from penink_cli.ground import pens
 from penink_cli.ground.device import FILLED, MEAN
 from penink_cli.lines import strokes as pressed
 from penink_cli.reconstruction.kernels import T1
@@ -15,7 +16,8 @@ from penink_cli.selfdrawing.data import ANGLES
 
 #: Numbers of other modules, by the names they go by in the renderers.
 OTHERS: dict[str, Any] = {
-    "MEAN": MEAN, "FILLED": FILLED, "T1": T1, "ANGLES": ANGLES,
+    "PRINT_FULL": pens.FULL, "PRINT_LEAST": pens.LEAST, "PRINT_DOTS": pens.DOTS, "MEAN": MEAN, "FILLED": FILLED,
+    "SPAN_PARTS": screens.SPAN_PARTS, "EVER": screens.EVER, "T1": T1, "ANGLES": ANGLES,
     "LADDER": telling.LADDER, "LINE_STEP": 1.5, "LINE_FINEST": pressed.FINEST, "LINE_TAPER": pressed.TIP_PT,
     "LINE_TIP": pressed.TIP, "WHITE_PEN": beside.WHITE.pen_pt, "WHITE_FROM": beside.DARK, "WHITE_FULL": beside.FULL,
     "MOST_TONE": engraving.MOST, "CLOSED": engraving.CLOSED,

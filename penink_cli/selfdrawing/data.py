@@ -29,6 +29,8 @@ from penink_cli.selfdrawing.lattice import PARTS, on_lattice
 #: Arrays of a Level 2 interpreter hold 65535 entries, one a sample: 254 × 254 and its border.
 MOST_SAMPLES = 254
 MOST_EDGES = 20000
+#: Eased samples are sent at so many levels at the most: finer ones are more bytes and show nothing.
+EASED = 64
 #: Of telling lines, all together.
 MOST_POINTS = 40000
 
@@ -58,7 +60,7 @@ class LineData:
 class LayerData:
     """One layer.
 
-    width, height: of the samples. levels: of grey they are kept at.
+    width, height: of the samples. levels: of grey they are sent at.
     samples: a byte a sample, coded. edges: bytes of the chains.
     chains, outlined, vertices, ends: how many chains, how many of them (the first) are outlined, vertices, edges.
     outline_pt: pen of the outlines. gamma: of the tone curve. table: of the texture.
@@ -133,8 +135,9 @@ def _layer(layer: Layer, w: int, h: int, number: int, family: int) -> LayerData:
         rest = np.setdiff1d(np.arange(len(ends)), [e for run in drawn for e in run.edges])
         chains = [_chain_bytes(vertices[run.trail], _pressure(run, layer)) for run in drawn]
         chains += [_chain_bytes(vertices[trail]) for trail, _ in trails(vertices, ends[rest])]
+    ink, levels = ink_levels(layer)
     return LayerData(
-        w, h, layer.levels, samples_bytes(ink_levels(layer), layer.levels), b"".join(chains),
+        w, h, levels, samples_bytes(ink, levels), b"".join(chains),
         len(chains), outlined, len(np.unique(ends)), len(ends),
         layer.outline.pen_pt if layer.outline else 0.0, layer.gamma, screens.table(layer.texture, layer.pen_pt),
         family, _form(layer), _field(layer), layer.texture.engraving if layer.pen_pt is None else None, _told(layer),
@@ -181,11 +184,20 @@ def _told(layer: Layer) -> LineData:
     return LineData(layer.line, len(which) - white, white, across, down, drawn)
 
 
-def ink_levels(layer: Layer) -> Ints:
-    """Samples (h, w) as levels of ink, 0 for paper."""
+def ink_levels(layer: Layer) -> tuple[Ints, int]:
+    """Samples (h, w) as levels of ink, 0 for paper, and how many levels there are.
+
+    A device has no time to ease few grey levels: it is sent eased ones, in parts of a level.
+    """
     most = layer.levels - 1
     grey = np.floor(layer.samples.values * float(most) / layer.samples.maxval + 0.5).astype(np.int64)
-    return most - grey
+    if (parts := EASED // layer.levels) > 1:
+        from penink_cli.reconstruction.easing import eased
+
+        fine = eased(GreyImage(grey.astype(np.uint16), most), layer.edges)
+        most *= parts
+        grey = np.floor(fine.values * float(most) / fine.maxval + 0.5).astype(np.int64)
+    return most - grey, most + 1
 
 
 def ink_bytes(levels: Ints, count: int) -> Ints:
@@ -196,7 +208,7 @@ def ink_bytes(levels: Ints, count: int) -> Ints:
 def as_sent(layer: Layer) -> tuple[GreyImage, EdgeList | None]:
     """A layer's samples and edges as a device has them, the edges in 32nds of a sample."""
     h, w = layer.samples.values.shape
-    ink = ink_bytes(ink_levels(layer), layer.levels)
+    ink = ink_bytes(*ink_levels(layer))
     samples = GreyImage((255 - ink).astype(np.uint8), 255)
     if layer.edges is None or not len(layer.edges.edges):
         return samples, None
@@ -268,12 +280,19 @@ def is_sent(screen: screens.Screen) -> bool:
 
 
 def tile_bytes(screen: screens.Screen) -> bytes:
-    """Strokes that are not lines: threshold in 255ths, first point, three steps from there, in quarters of a point."""
+    """Strokes that are not lines: threshold in 255ths, first point, three steps from there, in quarters of a point.
+
+    Those of a tile that grows: span, two bytes, and threshold, two bytes; then the points likewise.
+    """
     control = np.rint(screen.points.reshape(-1, 4, 2) / screens.GRID_PT).astype(np.int64)
-    limits = np.rint(screen.enters * 255).astype(np.int64)
+    if screen.spans is None:
+        heads = [bytes([limit]) for limit in np.rint(screen.enters * 255).astype(np.int64).tolist()]
+    else:
+        limits = screen.enters.astype(np.int64).tolist()
+        heads = [bytes(span) + k.to_bytes(2, "big") for span, k in zip(screen.spans.tolist(), limits, strict=True)]
     parts = []
-    for limit, points in zip(limits.tolist(), control.tolist(), strict=True):
+    for head, points in zip(heads, control.tolist(), strict=True):
         (x, y), *rest = points
         steps = [c - o + 128 for point in rest for c, o in zip(point, (x, y), strict=True)]
-        parts.append(bytes([limit]) + x.to_bytes(2, "big") + y.to_bytes(2, "big") + bytes(steps))
+        parts.append(head + x.to_bytes(2, "big") + y.to_bytes(2, "big") + bytes(steps))
     return b"".join(parts)

@@ -104,6 +104,8 @@ def _description(layer: LayerData) -> dict[str, Any]:
         "pen": round(layer.table.pen_pt, 4),
         "magnification": round(layer.table.magnification, 4),
         "screens": [_screen(s, layer.table.whole) for s in layer.table.screens],
+        "fill": [[one.angle, one.low, one.high] for one in layer.table.fill],
+        "least": layer.table.least_pt,
     }
 
 
@@ -130,4 +132,5 @@ def _screen(screen: Screen, whole: bool) -> Any:
         "whole": whole,
         "widens": round(screen.widens, 4),
         "strokes": len(screen.enters),
+        "grows": screen.spans is not None,
     }

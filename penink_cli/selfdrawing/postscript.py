@@ -104,11 +104,14 @@ def _opened(number: int) -> str:
 def _closed(layer: LayerData) -> str:
     table = layer.table
     screens = " ".join(_screen(i, s) for i, s in enumerate(table.screens))
+    if table.fill:
+        fill = " ".join(f"[ {_row((one.angle, one.low, one.high))} ]" for one in table.fill)
+        screens += f" {plain(table.least_pt, 4)} [ {fill} ] Grow"
     return (
         f"/OutlinePen {plain(layer.outline_pt, 4)} def /Gamma {plain(layer.gamma, 4)} def /Family {layer.family} def\n"
         f"/LinePen {plain(layer.told.choice.pen_pt, 4)} def /LineEven {_bool(layer.told.choice.even)} def\n"
         f"/engraving {_engraving(layer.engraving)} def /black {plain(255 * layer.black, 4)} def\n"
-        f"{plain(table.pen_pt, 4)} {plain(table.magnification, 4)} [ {screens} ] Layer\nend\n"
+        f"{plain(table.pen_pt, 4)} {plain(table.magnification, 4)} Pens [ {screens} ] Layer\nend\n"
     )
 
 
@@ -139,7 +142,7 @@ def _tile(number: int, screen: Screen, whole: bool) -> str:
     fresh, covers = (_row(v.tolist()) for v in (screen.fresh, screen.covers))
     return (
         f"/Tile{number} {plain(screen.width, 4)} {plain(screen.height, 4)} [ {fresh} ] [ {covers} ] "
-        f"{'true' if whole else 'false'} {plain(screen.widens, 4)} {len(screen.enters)} GetTile def"
+        f"{_bool(whole)} {plain(screen.widens, 4)} {_bool(screen.spans is not None)} {len(screen.enters)} GetTile def"
     )
 
 

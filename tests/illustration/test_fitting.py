@@ -61,3 +61,17 @@ def test_too_few_are_told(rich):
         packed_within(rich, 100, settled)
     least = int(str(told.value).rsplit(" ", 1)[1])
     assert len(packed_within(rich, least, settled)) == least
+
+
+def test_what_a_small_drawing_does_not_show_is_left_out(rich, tmp_path):
+    """A smaller drawing takes fewer bytes, one of any size no more than the whole, and both can be limited besides."""
+    whole = len(archive.pack(illustration.members(rich)))
+    packed = [packed_within(rich, None, settled, seen_at=72.0 * inches) for inches in (0.5, 2, 30)]
+    sizes = [len(one) for one in packed]
+    assert sizes == sorted(sizes) and sizes[0] < 0.8 * whole and sizes[-1] <= whole
+    assert packed_within(rich, whole, settled, seen_at=36.0) == packed[0]
+    between = (sizes[0] + sizes[1]) // 2
+    assert len(packed_within(rich, between, settled, seen_at=144.0)) <= between
+    path = tmp_path / "x.penink"
+    path.write_bytes(packed[0])
+    assert read_illustration(str(path), 10**6).width == rich.width

@@ -28,9 +28,9 @@ def ink(page: np.ndarray) -> float:
 
 
 def test_the_devices_tone_grid_equals_enlarge():
-    picture = illustration()
+    picture = illustration(inches=4)
     program = postscript.write(picture, "readable").decode()
-    n = 108
+    n = 288
     show = "Tone { (%stdout)(w) file exch writehexstring (\\n) print } forall\n"
     program = program.replace("  Gamma 1 ne { Curve } if\n", show)
     out = ghostscript(program.encode(), "-sDEVICE=pbmraw", "-r600", "-sOutputFile=/dev/null").decode()

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from penink_cli.ground.model import Illustration
+from penink_cli.blasting.constants import PIXEL, WIDENED
+from penink_cli.ground.model import Illustration, OutlineChoice
 from penink_cli.illustration.layering import layer_strokes
 from penink_cli.options.textures import find_texture
 from penink_cli.selfdrawing import html, postscript
@@ -61,8 +62,9 @@ def part_alike(ours: np.ndarray, theirs: np.ndarray, within: float) -> float:
 
 @pytest.mark.parametrize(
     ("texture", "width"), [(CROSSHATCH, 108.0), (CROSSHATCH, 250.0), (find_texture("grain"), 108.0),
-                           (find_texture("stipple"), 108.0), (find_texture("scribble"), 108.0)],
-    ids=["crosshatch", "crosshatch, larger", "grain", "stipple", "scribble"],
+                           (find_texture("stipple"), 108.0), (find_texture("scribble"), 108.0),
+                           (find_texture("brick"), 60.0), (find_texture("brick"), 300.0)],
+    ids=["crosshatch", "crosshatch, larger", "grain", "stipple", "scribble", "brick, smaller", "brick, larger"],
 )  # fmt: skip
 def test_all_three_draw_the_same_strokes(texture, width, tmp_path):
     picture = illustration(texture=texture)
@@ -84,6 +86,27 @@ def test_all_three_add_layers_up_alike(below, tmp_path):
         assert len(theirs) == pytest.approx(len(ours), rel=0.01)
         assert part_alike(ours, theirs, 0.03) > 0.985
         assert part_alike(theirs, ours, 0.03) > 0.985
+
+
+def test_pens_are_finer_on_a_small_print(tmp_path):
+    """On paper under 4 in all three have finer pens, by the root of its width, but not under so many dots."""
+    picture = illustration(outline=OutlineChoice(pen_pt=0.8))
+    path = tmp_path / "picture.html"
+    path.write_bytes(html.write(picture, "picture"))
+    layers = tuple(replace(layer, rule="threshold") for layer in picture.layers)
+    for width, part in ((72, 0.5), (144, np.sqrt(0.5)), (288, 1.0)):
+        ((hatching, outline),) = layer_strokes(replace(picture, layers=layers), width, device_dpi=600)
+        # with what a printer adds to a slanting stroke, less what it adds to this one
+        widens = WIDENED - np.sqrt(2) * PIXEL
+        assert np.median(hatching.widths) == pytest.approx(0.4 * part + widens, abs=0.006)
+        with Page(path, 300, 300) as page:
+            text = page.evaluate(f"svg({width}, [0, 0, {width}, {width}], 72 / 600)")
+        usual = float(re.search(r'stroke-width="([^"]*)"', text)[1]) * 72 / 25.4
+        assert usual == pytest.approx(float(np.median(hatching.widths)), abs=0.02)
+        assert outline.widths.max() == pytest.approx(0.8 * part, rel=0.2)
+    with Page(path, 300, 300) as page:
+        coarse = page.evaluate("svg(72, [0, 0, 72, 72], 72 / 600, 1)")
+    assert float(re.search(r'stroke-width="([^"]*)"', coarse)[1]) * 72 / 25.4 > 0.35
 
 
 def test_other_strokes_are_told_apart():

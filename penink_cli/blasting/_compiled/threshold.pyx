@@ -204,7 +204,7 @@ def runs(
     cosine, sine = direction(screen.angle)
     cdef double tile_u = screen.width, tile_v = screen.height, wave = screen.wave, turn = screen.turn
     cdef double pen = table.pen_pt
-    cdef bint whole = table.whole
+    cdef bint whole = table.whole and screen.layer is None
     cdef Stroke stroke = Stroke()
     cdef int s, c, i, k, start, last, got, every
     cdef double u0, v0, u1, v1, u2, v2, u3, v3, length, step, limit, du, dv, mx, my, reach, total, aside, aim

@@ -20,5 +20,6 @@ def follows(texture: Texture) -> bool:
 def draw(task: Task) -> Strokes:
     """The strokes of the texture's screens."""
     return blast_by_threshold(
-        task.tone, task.width_pt, task.height_pt, task.edges, task.texture, task.pen_pt, task.device_dpi, task.outlines
-    )
+        task.tone, task.width_pt, task.height_pt, task.edges, task.texture, task.pen_pt, task.device_dpi, task.outlines,
+        task.natural_pt,
+    )  # fmt: skip

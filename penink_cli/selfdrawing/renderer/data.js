@@ -67,16 +67,18 @@ class Reader {
     });
   }
 
-  // Strokes that are not lines: threshold, first point, three steps from there, in quarters of a point.
-  tile({tile, fresh, covers, whole, widens, strokes: count}) {
-    const strokes = [];
+  // Strokes that are not lines: threshold, first point, three steps from there, in quarters of a point; of tiles that grow the span
+  // and a longer threshold.
+  tile({tile, fresh, covers, whole, widens, strokes: count, grows}) {
+    const strokes = [], spans = grows ? [] : null;
     for (let k = 0; k < count; k++) {
-      const limit = this.byte(), u0 = this.word() / 4, v0 = this.word() / 4;
+      if (grows) spans.push([this.byte(), this.byte()]);
+      const limit = grows ? (this.word() + 0.5) / SPAN_PARTS : this.byte(), u0 = this.word() / 4, v0 = this.word() / 4;
       const [x1, y1, x2, y2, x3, y3] = Array.from({length: 6}, () => (this.byte() - 128) / 4);
       const axis = (first, a, b, c) => [first, 3 * a, 3 * (b - 2 * a), c - 3 * a - 3 * (b - 2 * a)];
       strokes.push(Math.hypot(x3, y3), ...axis(u0, x1, x2, x3), ...axis(v0, y1, y2, y3), limit, freshInk(limit / 255, covers, fresh), -1);
     }
-    return {angle: 0, strokes: Float64Array.from(strokes), tile, whole, wave: 0, turn: 0, widens};
+    return {angle: 0, strokes: Float64Array.from(strokes), tile, whole, wave: 0, turn: 0, widens, spans};
   }
 }
 
@@ -92,6 +94,6 @@ function readLayers(description, bytes) {
       Uint8Array.from({length: 256}, (_, t) => Math.floor(255 * (1 - (1 - t / 255) ** d.gamma) + 0.5));
     const field = reader.field(...d.field, {picture, xs, ys, ends}), told = reader.told(...d.told);
     return {picture, screens, outlines, curve, field, told, form: d.form, black: d.black, ink: d.ink, engraving: d.engraving, lineGrid: d.lineGrid, linePen: d.linePen, lineEven: d.lineEven,
-      family: d.family, pen: d.pen, magnification: d.magnification, outlinePen: d.outlinePen / d.magnification};
+      family: d.family, pen: d.pen, magnification: d.magnification, outlinePen: d.outlinePen, tile: screens[0], given: d};
   });
 }

@@ -316,11 +316,32 @@ function point(count, t, steps) {
   return count + 1;
 }
 
+// Gives a layer the pens that suit a picture so wide: of a small one they are finer, though not under so many of the device's dots.
+function suit(layer, width, dot) {
+  const {given, pen} = layer, part = clamp(Math.sqrt(width / PRINT_FULL), PRINT_LEAST, 1), finer = wide => Math.min(Math.max(part * wide, PRINT_DOTS * dot), wide);
+  layer.magnification = layer.engraving ? given.magnification : (finer(given.magnification * pen - WIDENED) + WIDENED) / pen;
+  layer.outlinePen = finer(given.outlinePen) / layer.magnification;
+  layer.linePen = finer(given.linePen);
+  layer.fine = part;
+  if (layer.given.fill.length) grow(layer, Math.max(width / size[0], given.least / Math.min(...layer.tile.tile)));
+}
+// The tile of a layer so many times as large, and lines for the tones that it does not reach.
+function grow(layer, scale) {
+  const {tile, given, magnification} = layer, by = scale / magnification, parts = SPAN_PARTS * 1.001 * scale;
+  if (layer.grown && layer.grown.scale === scale && layer.grown.by === by) return;
+  const there = tile.spans.map(([from, upto]) => from <= parts && (upto > parts || upto === EVER));
+  const strokes = tile.strokes.filter((_, k) => there[Math.floor(k / STROKE)]).map((x, k) => k % STROKE < 9 ? x * by : k % STROKE === 9 ? x / by : x);
+  const reached = strokes.length ? Math.min(1, strokes[strokes.length - STROKE + 9] / 255) : 0, over = tone => reached + (1 - reached) * tone;
+  layer.screens = [{...tile, strokes, tile: tile.tile.map(side => side * by)}, ...given.fill.map(([angle, low, high], k) => lines(k + 1, angle, over(low), over(high), 0, 0, far(Math.cos(angle * Math.PI / 180), 0) + Math.abs(Math.sin(angle * Math.PI / 180))))];
+  layer.grown = {scale, by};
+}
+
 // Draws the layers of a picture of width by height points in a window (x0 y0 x1 y1) of it, for a device that adds so many points
 // (gain) to an upright stroke; `every`: cells of tone a node of the field, 2 in a hurry. Calls stroke(layer, screen, count, pressure)
 // with strokes of hatching, outline(layer, xs, ys, pen) with outlines, in units of the layer, of which a point has `magnification`,
-// and fill(layer, xs, ys) with shapes, in points.
-function draw(layers, width, height, window, gain, every, stroke, outline, fill) {
+// and fill(layer, xs, ys) with shapes, in points. dot: the least that the device paints, points.
+function draw(layers, width, height, window, gain, every, stroke, outline, fill, dot = gain) {
+  for (const layer of layers) suit(layer, width, dot);
   const blocks = new Blocks(width, height, window, BLOCK * Math.max(...layers.map(layer => layer.magnification)));
   if (!blocks.bare.length) return;
   const sheets = layers.map(layer => new Sheet(layer, blocks, gain)), outlines = layers.map(layer => outlinesOf(layer, blocks));

@@ -55,7 +55,7 @@ function repaint(every = 1) {
       raster.stroke(alongX, alongY, count, per * layer.magnification, x, y, pressure * layer.pen * layer.magnification * per / 2, false);
       strokes++;
     }, (layer, xs, ys, pen) => raster.stroke(xs, ys, xs.length, per * layer.magnification, x, y, pen * layer.magnification * per / 2, true),
-    (layer, xs, ys) => { raster.fill(xs, ys, per, x, y); strokes++; });
+    (layer, xs, ys) => { raster.fill(xs, ys, per, x, y); strokes++; }, 1 / per);
     return {raster, ink};
   });
   if (!image || image.width !== wide || image.height !== tall) image = new ImageData(canvas.width = wide, canvas.height = tall);
@@ -70,10 +70,11 @@ function repaint(every = 1) {
 // The inks, the first at the bottom. They are transparent, and layers of one know nothing of those of another.
 const inks = () => [...new Set(layers.map(layer => layer.ink))];
 
-// A window (points) of the picture, drawn at so many points wide, as an SVG document for a device whose pixels are `gain` points.
+// A window (points) of the picture, drawn at so many points wide, as an SVG document for a device whose pixels are `gain` points;
+// `dot`: those of the one for which pens of a small picture are not too fine.
 // Written as penink_cli/outputs/svg.py does: in millimetres, a group a layer, a path a stroke, shapes for strokes that swell; all
 // of it within the frame, for a plotter knows no clip path.
-function svg(width, window, gain) {
+function svg(width, window, gain, dot = gain) {
   const height = width * size[1] / size[0], [x0, y0] = window, x1 = Math.min(window[2], width), y1 = Math.min(window[3], height), mm = x => +(x * 25.4 / 72).toFixed(3);
   const groups = layers.map(() => ({strokes: [], shapes: [], pens: new Map()}));
   const at = (x, y) => `${mm(x - x0)} ${mm(y - y0)}`;
@@ -92,7 +93,7 @@ function svg(width, window, gain) {
     (layer, xs, ys) => {
       const shape = clipped(xs, ys, [x0, y0, x1, y1]);
       if (shape.length > 2) groups[layers.indexOf(layer)].shapes.push(shape.map(([x, y]) => at(x, y)).join(" "));
-    });
+    }, dot);
   const wide = mm(x1 - x0), tall = mm(y1 - y0);
   return `<svg xmlns="http://www.w3.org/2000/svg" xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape" version="1.1" width="${wide}mm" height="${tall}mm" viewBox="0 0 ${wide} ${tall}">\n` +
     groups.map(({strokes, shapes, pens}, i) => {
@@ -146,7 +147,7 @@ function visible() {
 }
 function save() {
   const link = document.createElement("a");
-  link.href = URL.createObjectURL(new Blob([svg(size[0] * scale() / UNIT, visible(), 0)], {type: "image/svg+xml"}));
+  link.href = URL.createObjectURL(new Blob([svg(size[0] * scale() / UNIT, visible(), 0, 1 / UNIT / (window.devicePixelRatio || 1))], {type: "image/svg+xml"}));
   link.download = document.title + ".svg";
   link.click();
   setTimeout(() => URL.revokeObjectURL(link.href), 1000);

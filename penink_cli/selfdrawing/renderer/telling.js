@@ -5,12 +5,15 @@
 // each point; a spot may have but one point.
 function tellingOf(layer, width, height, white) {
   if (!layer.told.length) return [];
-  if (!layer.toldAt || layer.toldAt.width !== width || layer.toldAt.height !== height) {
-    let step = -1;
-    while (step + 1 < LADDER.length && LADDER[step + 1] <= width * 1.001) step++;
-    const drawn = layer.told.filter(line => line.enters <= step), sx = width / layer.lineGrid[0], sy = height / layer.lineGrid[1];
-    const strokes = kind => drawn.filter(line => line.white === kind).map(line => kind ? pressed(line, sx, sy, WHITE_PEN, false) : pressed(line, sx, sy, layer.linePen, layer.lineEven));
-    layer.toldAt = {width, height, dark: strokes(false), white: strokes(true)};
+  if (!layer.toldAt || layer.toldAt.width !== width || layer.toldAt.height !== height || layer.toldAt.pen !== layer.linePen) {
+    const sx = width / layer.lineGrid[0], sy = height / layer.lineGrid[1];
+    const strokes = kind => {
+      // finer pens have room for the lines of a picture that is as much larger
+      const room = width * 1.001 / (layer.lineEven && !kind ? 1 : layer.fine), step = LADDER.filter(wide => wide <= room).length - 1;
+      const drawn = layer.told.filter(line => line.white === kind && line.enters <= step);
+      return drawn.map(line => kind ? pressed(line, sx, sy, WHITE_PEN, false) : pressed(line, sx, sy, layer.linePen, layer.lineEven));
+    };
+    layer.toldAt = {width, height, pen: layer.linePen, dark: strokes(false), white: strokes(true)};
   }
   return white ? layer.toldAt.white : layer.toldAt.dark;
 }
