@@ -5,6 +5,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+from penink_cli.blasting._compiled import due
 from penink_cli.blasting.curves import Polylines
 from penink_cli.blasting.low_pass import LowPass
 from penink_cli.blasting.sheet import CELL_PT, Sheet, halve, resample
@@ -88,6 +89,23 @@ def test_the_low_pass_stops_at_steps_as_the_oracle_does(shape, sigma):
                     if abs(guide[i, j] - guide[y, x]) < 0.25:
                         wanted[y, x] += low_pass.kernel[i - y + radius, j - x + radius] * values[i, j]
     assert np.abs(low_pass(values) - wanted).max() < 1e-5
+
+
+def test_wider_vectors_change_no_byte():
+    """The low-pass, and strokes that are tried and drawn; the same by vectors that every processor has."""
+    tone = np.random.default_rng(1).random((60, 90)) * 0.7
+    tone[:, :40] = 0.1
+    results = []
+    for lanes in (16, 32):
+        due.take_lanes(lanes)
+        sheet = Sheet(tone, 90 * CELL_PT, 60 * CELL_PT, 0.0)
+        sheet.owe(sheet.tone)
+        along = np.linspace(0, 1, 60)[:, None]
+        points = np.concatenate([(3, 3) + along * (70, 45), (80, 2) + along * (-60, 50)])
+        lines = Polylines(points, np.array([0, 60, 120]))
+        runs, moved = sheet.place(lines, np.array([1.0, 1.5]), [np.arange(2)])
+        results.append((sheet.residual.tobytes(), runs.tolist(), moved.tolist()))
+    assert results[0] == results[1] and len(results[0][1]) > 1
 
 
 def test_no_ink_is_credited_across_a_strong_step():

@@ -5,6 +5,26 @@ Only `low_pass` and the other kernels of this room import this module.
 """
 
 from libc.math cimport fabsf
+from libc.string cimport memcpy
+
+cdef extern from "due.h" nogil:
+    int best_lanes()
+    int lanes
+    void splat_block(
+        float* residual, float* guide, long wide, float* kernel, long rows, float here, float ink, float step
+    )
+    void weigh(float* out, float* rows, long apart, float* line, long n, long blocks)
+    void weigh_beside(float* out, float* values, float* guide, long wide, float* kernel, long n, float step)
+
+
+def take_lanes(int wanted) -> int:
+    """Take the make for vectors of so many bytes, 16 or 32, or what this processor has: the same numbers by both."""
+    global lanes
+    lanes = min(wanted, best_lanes())
+    return lanes
+
+
+take_lanes(32)
 
 
 cdef void splat(
@@ -16,7 +36,6 @@ cdef void splat(
     cdef float* g
     cdef float* out
     cdef float w
-    cdef float[16] part
     cdef Py_ssize_t r = kernel.shape[0] // 2
     cdef Py_ssize_t top = y - r if y > r else 0
     cdef Py_ssize_t bottom = y + r + 1 if y + r + 1 < residual.shape[0] else residual.shape[0]
@@ -26,17 +45,11 @@ cdef void splat(
     cdef float none = 0.0  # a literal would be a double, and the loop four times slower
     cdef Py_ssize_t n = right - left
     cdef bint whole = x >= r and x - r + 16 <= residual.shape[1]
-    if whole:
-        for i in range(top, bottom):
-            k = &kernel[i - y + r, left - x + r]
-            g = &guide[i, left]
-            out = &residual[i, left]
-            # loops of a length known beforehand, into an array that can be no other's, become four vectors: a quarter
-            # of the instructions of one that writes straight to the residual; the kernel ends in zeros
-            for j in range(16):
-                part[j] = <float>(fabsf(g[j] - here) < step) * (ink * k[j])
-            for j in range(16):
-                out[j] -= part[j]
+    if whole:  # the kernel ends in zeros
+        splat_block(
+            &residual[top, left], &guide[top, left], residual.shape[1], &kernel[top - y + r, 0], bottom - top, here,
+            ink, step,
+        )
         return
     for i in range(top, bottom):
         k = &kernel[i - y + r, left - x + r]
@@ -58,58 +71,27 @@ def gather(
     and columns are done one after the other, a sixteenth of the work.
     scratch: (bottom - top + 2 r + 1, as wide as values).
     """
-    cdef Py_ssize_t y, x, a, b, i, j, n
-    cdef float k, m, v, w
-    cdef float* o
-    cdef float* e
-    cdef float* g
-    cdef float* here
+    cdef Py_ssize_t y, a, b
+    cdef float* row
     cdef Py_ssize_t r = kernel.shape[0] // 2
     cdef Py_ssize_t columns = out.shape[1]
-    cdef float none = 0.0
+    cdef Py_ssize_t blocks = plain.shape[1]
+    cdef Py_ssize_t wide = values.shape[1]
     with nogil:
-        n = 16 * plain.shape[1]
         for y in range(bottom - top + 2 * r):
-            o = &scratch[y, 0]
-            for x in range(n):
-                o[x] = 0.0
-            for j in range(2 * r + 1):
-                k = line[j]
-                e = &values[top + y, j]
-                for x in range(n):
-                    o[x] += k * e[x]
-        o = &scratch[bottom - top + 2 * r, 0]
+            weigh(&scratch[y, 0], &values[top + y, 0], 1, &line[0], 2 * r + 1, blocks)
+        row = &scratch[bottom - top + 2 * r, 0]
         for y in range(top, bottom):
             a = 0
-            while a < plain.shape[1]:
+            while a < blocks:
                 b = a + 1
-                while b < plain.shape[1] and plain[y, b] == plain[y, a]:
-                    b += 1
-                n = 16 * (b - a)
-                for x in range(n):
-                    o[x] = 0.0
                 if plain[y, a]:
-                    for i in range(2 * r + 1):
-                        k = line[i]
-                        e = &scratch[y - top + i, 16 * a]
-                        for x in range(n):
-                            o[x] += k * e[x]
+                    while b < blocks and plain[y, b]:
+                        b += 1
+                    weigh(row, &scratch[y - top, 16 * a], wide, &line[0], 2 * r + 1, b - a)
                 else:
-                    here = &guide[y + r, 16 * a + r]
-                    for i in range(2 * r + 1):
-                        # two at a time: rows of the kernel end in zeros
-                        for j in range(0, 2 * r + 1, 2):
-                            k = kernel[i, j]
-                            m = kernel[i, j + 1]
-                            e = &values[y + i, 16 * a + j]
-                            g = &guide[y + i, 16 * a + j]
-                            for x in range(n):
-                                v = k * e[x]
-                                w = m * e[x + 1]
-                                v = v if fabsf(g[x] - here[x]) < step else none
-                                w = w if fabsf(g[x + 1] - here[x]) < step else none
-                                o[x] += v + w
-                here = &out[y, 16 * a]
-                for x in range(n if 16 * b <= columns else columns - 16 * a):
-                    here[x] = o[x]
+                    weigh_beside(
+                        row, &values[y, 16 * a], &guide[y, 16 * a], wide, &kernel[0, 0], 2 * r + 1, step
+                    )
+                memcpy(&out[y, 16 * a], row, sizeof(float) * (min(16 * b, columns) - 16 * a))
                 a = b
