@@ -1,10 +1,12 @@
 """Parts of masks and distances in them: scipy's."""
 
+import math
+
 import numpy as np
 import pytest
 from scipy import ndimage
 
-from penink_cli.ground.masks import distance, filled, grown, labelled, opened, part_at
+from penink_cli.ground.masks import distance, filled, grown, labelled, near, opened, part_at
 
 
 @pytest.mark.parametrize("share", [0.0, 0.1, 0.4, 0.7, 0.97])
@@ -17,7 +19,11 @@ def test_parts_and_distances_are_scipys(share, shape):
     sides = [[box[0].start, box[0].stop, box[1].start, box[1].stop] for box in ndimage.find_objects(wanted)]
     assert boxes.tolist() == sides
     if not mask.all():
-        assert np.array_equal(distance(mask), ndimage.distance_transform_edt(mask))
+        away = ndimage.distance_transform_edt(mask)
+        assert np.array_equal(distance(mask), away)
+        for reach in (0.0, 0.9, 1.0, 1.5, math.sqrt(5), 3.0, 18.5, 30.0):
+            assert np.array_equal(near(mask, reach), away <= reach)
+            assert np.array_equal(near(mask, reach, strictly=True), away < reach)
 
 
 @pytest.mark.parametrize("share", [0.0, 0.2, 0.5, 0.8, 1.0])
@@ -37,3 +43,4 @@ def test_masks_are_filled_opened_and_grown_as_scipys(share, radius):
 
 def test_nothing_is_near_where_nothing_is_outside():
     assert (distance(np.ones((3, 4), bool)) > 1e100).all()
+    assert not near(np.ones((3, 4), bool), 7.0).any()

@@ -10,12 +10,14 @@ from __future__ import annotations
 import numpy as np
 
 from penink_cli.blasting import curve_fitting, curves, marks
-from penink_cli.ground.masks import distance, labelled
+from penink_cli.ground.masks import labelled, near
 from penink_cli.ground.model import Floats
 
 #: The border is told by places STEP_PT apart, and every place by its neighbours, ROUNDS times: it is known to about
 #: a pixel, of which there are two to four in a point.
 STEP_PT, ROUNDS = 0.25, 4
+#: Rings of fewer places are no border.
+LEAST_PLACES = 5
 #: How far a stroke may stray from its place. Rows begin WITHIN of half a painted width from the border and are PITCH
 #: painted widths apart: what lies beyond the stroke, at 2 halves less this, is then no further than 2 - 1.05 = .95
 #: halves from a place of a row, of which .75 are needed.
@@ -35,7 +37,7 @@ def fill(
     inside = tone > marks.LEVEL
     if not inside.any():
         return
-    rings = [ring for ring in _rings(tone, scale) if len(ring) > 4]
+    rings = _rings(tone, scale)
     edges = []
     for ring in rings:
         normal = _normals(ring)
@@ -44,11 +46,11 @@ def fill(
             chains.append(curve_fitting.fit(piece, TOLERANCE_PT, whole))
             widths.append(pen_pt)
         path = ring + WITHIN * half * normal
-        edges.append(np.stack([path, np.roll(path, -1, axis=0)], axis=1))
+        edges.append(np.stack([path, _beside(path)[1]], axis=1))
     if edges:
-        for x0, x1, y in _rows(np.concatenate(edges), PITCH * 2 * half):
-            chains.append(np.array([[x0 + (x1 - x0) * t / 3, y] for t in range(4)]))
-            widths.append(pen_pt)
+        rows = marks.straight(*_rows(np.concatenate(edges), PITCH * 2 * half))
+        chains.extend(rows)
+        widths.extend([pen_pt] * len(rows))
     thin = _thin(inside, half, 1 / float(scale[0]))
     if thin.any():
         marks.fill(np.where(thin, tone, 0.0), np.zeros(2), scale, pen_pt, gain_pt, chains, widths, fixed)
@@ -63,18 +65,28 @@ def _rings(tone: Floats, scale: Floats) -> list[Floats]:
 
     level = marks.LEVEL
     padded = np.pad(tone, 1, mode="edge")
-    frame = np.ones(padded.shape, bool)
-    frame[1:-1, 1:-1] = False
-    padded[frame] = np.where(padded[frame] > level, 2 * level - padded[frame], 0.0)  # half way is the frame
+    for side in (padded[0], padded[-1], padded[1:-1, 0], padded[1:-1, -1]):
+        side[:] = np.where(side > level, 2 * level - side, 0.0)  # half way is the frame
     padded[[0, 0, -1, -1], [0, -1, 0, -1]] = 0.0
     rings = []
+    shortest = LEAST_PLACES * STEP_PT / (2 * float(scale.max()))  # its places lie within a pixel and a half
     for contour in find_contours(padded, level):
-        points = (contour[:-1, ::-1] - 0.5) * scale
-        points = _sampled(points)
+        if len(contour) < shortest:
+            continue
+        points = _sampled((contour[:-1, ::-1] - 0.5) * scale)
+        if len(points) < LEAST_PLACES:
+            continue
         for _ in range(ROUNDS):
-            points = (np.roll(points, 1, axis=0) + 2 * points + np.roll(points, -1, axis=0)) / 4
+            before, after = _beside(points)
+            points = (before + 2 * points + after) / 4
         rings.append(points)
     return rings
+
+
+def _beside(ring: Floats) -> tuple[Floats, Floats]:
+    """The places (n, 2) before and after each of a ring's (n, 2)."""
+    around = np.concatenate([ring[-1:], ring, ring[:1]])
+    return around[:-2], around[2:]
 
 
 def _sampled(ring: Floats) -> Floats:
@@ -90,7 +102,8 @@ def _sampled(ring: Floats) -> Floats:
 
 def _normals(ring: Floats) -> Floats:
     """Unit normals (n, 2) towards what is dark."""
-    ahead = np.roll(ring, -1, axis=0) - np.roll(ring, 1, axis=0)
+    before, after = _beside(ring)
+    ahead = after - before
     length = np.maximum(np.sqrt(ahead[:, 0] * ahead[:, 0] + ahead[:, 1] * ahead[:, 1]), 1e-9)
     return np.column_stack([-ahead[:, 1], ahead[:, 0]]) / length[:, None]
 
@@ -119,7 +132,7 @@ def _pieces(ring: Floats, wanted: marks.Mask) -> list[tuple[Floats, bool]]:
     return [(ring[i:j], False) for i, j in zip(change[::2].tolist(), change[1::2].tolist()) if j - i > 1]
 
 
-def _rows(edges: Floats, pitch: float) -> list[tuple[float, float, float]]:
+def _rows(edges: Floats, pitch: float) -> tuple[Floats, Floats, Floats]:
     """Begin, end and height of rows within rings that are given by their edges (m, 2, 2).
 
     Within is where they wind around a place more often with the dark inside than outside: where a ring that was moved
@@ -139,7 +152,7 @@ def _rows(edges: Floats, pitch: float) -> list[tuple[float, float, float]]:
     within = winding > 0
     before = np.concatenate([[False], within[:-1]])
     begin, end = order[within & ~before], order[~within & before]
-    return list(zip(x[begin].tolist(), x[end].tolist(), y[begin].tolist()))
+    return x[begin], x[end], y[begin]
 
 
 def _thin(inside: marks.Mask, half: float, px: float) -> marks.Mask:
@@ -147,9 +160,11 @@ def _thin(inside: marks.Mask, half: float, px: float) -> marks.Mask:
 
     px: pixels in a point.
     """
-    deep = distance(np.pad(inside, 1))[1:-1, 1:-1] - 0.5 >= half * px
-    thin = inside & (distance(~deep) > half * px + 1.0)
+    deep = ~near(np.pad(inside, 1), half * px + 0.5, strictly=True)[1:-1, 1:-1]
+    thin = inside & ~near(~deep, half * px + 1.0)
+    if not thin.any():
+        return thin
     part, boxes = labelled(thin)
     size = np.bincount(part.ravel(), minlength=len(boxes) + 1)
     thin &= size[part] >= LEAST_THIN_PT2 * px * px
-    return np.asarray(inside & (thin | (distance(~thin) < half * px + 1.5)))
+    return np.asarray(inside & (thin | near(~thin, half * px + 1.5, strictly=True)))

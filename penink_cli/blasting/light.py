@@ -13,7 +13,7 @@ import numpy as np
 
 from penink_cli.blasting import curves, marks
 from penink_cli.blasting.sheet import resample
-from penink_cli.ground.masks import distance
+from penink_cli.ground.masks import distance, near
 from penink_cli.ground.model import Floats, Strokes
 
 #: The tone is looked at so finely, pixels in a point, and strokes at such steps.
@@ -39,14 +39,14 @@ class LightThings:
         self.none = not self.there.any()
         if self.none:
             return
-        near = resample(self.there.astype(np.float64), *(math.ceil(FINE * side) for side in (height_pt, width_pt)))
-        fine = resample(tone, *near.shape)
+        part = resample(self.there.astype(np.float64), *(math.ceil(FINE * side) for side in (height_pt, width_pt)))
+        fine = resample(tone, *part.shape)
         # half way between light and dark, more exactly than the tone's own pixels have it
-        self.away: Floats = distance(~((near > 0.0) & (fine < marks.LEVEL))) / FINE
+        self.away: Floats = distance(~((part > 0.0) & (fine < marks.LEVEL))) / FINE
 
     def within(self, reach_pt: float) -> marks.Mask:
         """(h, w) of the tone: what is no further from one than this."""
-        return distance(~self.there) <= reach_pt * self.px
+        return near(~self.there, reach_pt * self.px)
 
     def kept_out(self, strokes: Strokes, gain_pt: float) -> Strokes:
         """The strokes, cut where a device that paints them wider by gain_pt would ink a light thing."""

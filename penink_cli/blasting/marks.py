@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from penink_cli.blasting.sheet import Cells, resample
 from penink_cli.ground.masks import distance, labelled
-from penink_cli.ground.model import Floats, Strokes
+from penink_cli.ground.model import Floats, Ints, Strokes
 
 Mask = npt.NDArray[np.bool_]
 
@@ -118,25 +118,44 @@ def fill(
     # rows between pixel centres
     at = np.clip(ys - 0.5, 0, h - 1)
     i = np.minimum(at.astype(np.int64), max(h - 2, 0))
-    f = (at - i)[:, None]
-    lines = tone[i] * (1 - f) + tone[np.minimum(i + 1, h - 1)] * f
-    for y, line in zip(ys.tolist(), lines):
-        dark = line > LEVEL
-        edges = np.flatnonzero(np.diff(np.concatenate([[False], dark, [False]]).astype(np.int8)))
-        for a, b in zip(edges[::2].tolist(), edges[1::2].tolist()):
-            begin = _crossing(line, a - 1, a) if a else 0.0
-            end = _crossing(line, b - 1, b) if b < w else float(w)
-            x0, x1 = (begin + corner[0]) * scale[0], (end + corner[0]) * scale[0]
-            py = (y + corner[1]) * scale[1]
-            if x1 - x0 < 2 * inset:
-                chains.append(np.array([[(x0 + x1) / 2, py]]))
-                widths.append(pen_pt if fixed else max(min(pen_pt, x1 - x0 - gain_pt), 0.1))
-                continue
-            x0, x1 = x0 + inset, x1 - inset
-            chains.append(np.array([[x0 + (x1 - x0) * t / 3, py] for t in range(4)]))
-            widths.append(pen_pt)
+    dark = tone > LEVEL
+    # most of a picture is none of the thing
+    there, used = dark.any(axis=1), np.flatnonzero(dark.any(axis=0))
+    some = there[i] | there[np.minimum(i + 1, h - 1)]
+    if not some.any():
+        return
+    ys, i, f = ys[some], i[some], (at - i)[some, None]
+    left, right = max(0, int(used[0]) - 1), min(w, int(used[-1]) + 2)
+    part = tone[:, left:right]
+    lines = part[i] * (1 - f) + part[np.minimum(i + 1, h - 1)] * f
+    inked = np.zeros((len(ys), right - left + 2), np.bool_)
+    inked[:, 1:-1] = lines > LEVEL
+    row, a = np.nonzero(inked[:, 1:] & ~inked[:, :-1])
+    b = np.nonzero(inked[:, :-1] & ~inked[:, 1:])[1]
+    begin, end = _crossing(lines, row, a, left), _crossing(lines, row, b, left)
+    x0, x1 = (begin + corner[0]) * scale[0], (end + corner[0]) * scale[0]
+    y = (ys[row] + corner[1]) * scale[1]
+    dot = x1 - x0 < 2 * inset
+    drawn = straight(np.where(dot, (x0 + x1) / 2, x0 + inset), x1 - inset, y)
+    chains.extend(line[:1] if short else line for line, short in zip(drawn, dot.tolist()))
+    width = np.where(dot & (not fixed), np.maximum(np.minimum(pen_pt, x1 - x0 - gain_pt), 0.1), pen_pt)
+    widths.extend(width.tolist())
 
 
-def _crossing(line: Floats, a: int, b: int) -> float:
-    """Where a row reaches LEVEL between the middles of two pixels, from its first pixel's left edge."""
-    return a + 0.5 + float((LEVEL - line[a]) / (line[b] - line[a]))
+def straight(x0: Floats, x1: Floats, y: Floats) -> list[Floats]:
+    """Level lines from x0 to x1 (n,) at y as cubics: n arrays (4, 2)."""
+    across = x0[:, None] + (x1 - x0)[:, None] * np.arange(4) / 3
+    return list(np.stack([across, np.broadcast_to(y[:, None], across.shape)], axis=2))
+
+
+def _crossing(lines: Floats, row: Ints, b: Ints, left: int) -> Floats:
+    """Where rows reach LEVEL before the middle of pixel b (n,) of lines, which begin at pixel `left`: from that of 0.
+
+    Before the first pixel and after the last one at their sides.
+    """
+    result = (b + left).astype(np.float64)
+    inner = (b > 0) & (b < lines.shape[1])
+    row, b = row[inner], b[inner]
+    a = b - 1
+    result[inner] = a + left + 0.5 + (LEVEL - lines[row, a]) / (lines[row, b] - lines[row, a])
+    return result

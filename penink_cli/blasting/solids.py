@@ -16,7 +16,7 @@ from penink_cli.blasting import bordered, marks
 from penink_cli.blasting.light import LightThings
 from penink_cli.blasting.sheet import Cells, resample
 from penink_cli.composition.filters import blurred
-from penink_cli.ground.masks import distance, labelled
+from penink_cli.ground.masks import labelled, near
 from penink_cli.ground.model import Floats, Strokes
 
 #: The tone from which on it is black where a texture ends in black, and where one can be as dark as DARKEST itself.
@@ -60,32 +60,34 @@ def solids(
         h, w = round(h * fine), round(w * fine)
         tone = resample(tone, h, w)
     px = w / width_pt
+    fall = FALLS_PT * px
     smooth = blurred(tone.astype(np.float32), SMOOTH_PT * px, 1).astype(np.float64)
     if everywhere:
         smooth = _without_grain(smooth, px)
     core = smooth > black
-    falls = (distance(smooth >= LIGHT) < FALLS_PT * px) & (distance(~core) < FALLS_PT * px)
+    falls = near(smooth >= LIGHT, fall, strictly=True) & near(~core, fall, strictly=True)
     # how much darker a place is than what black begins with there, half way up or down where it does
     darker = np.where(smooth > marks.LEVEL, np.maximum(tone, smooth), tone)  # smoothed outside, it would reach out
     value = np.where(falls, darker - marks.LEVEL, smooth - black) + marks.LEVEL
     if light:
-        near = resample(light.within(FALLS_PT).astype(np.float64), h, w) > 0
-        value = np.where(near & falls, tone, value)  # smoothed, it would be smaller
+        close = resample(light.within(FALLS_PT).astype(np.float64), h, w) > 0
+        value = np.where(close & falls, tone, value)  # smoothed, it would be smaller
     if light and not everywhere:
         value = np.where(resample(light.within(BESIDE_PT).astype(np.float64), h, w) > 0.5, value, 0.0)
     if everywhere:
-        blots, flecks = _blots(smooth, core, black, px), _flecks(value, smooth, px)
+        deep = blurred(smooth.astype(np.float32), WIDE_PT * px, 1) >= AROUND  # dark all around
+        blots, flecks = _blots(smooth, core, deep, black, px), _flecks(value, smooth, deep, px)
         value = np.where(flecks, np.nextafter(marks.LEVEL, 1), value)
     part, boxes = labelled(value > marks.LEVEL)
     count = len(boxes) + 1
-    at = np.arange(h) * ink.shape[0] // h, np.arange(w) * ink.shape[1] // w
-    drawn = np.bincount(part[ink[np.ix_(*at)] > marks.INKED], minlength=count)
-    area, size = (np.bincount(p.ravel(), minlength=count) for p in (part[core], part))
+    rows, columns = np.arange(h) * ink.shape[0] // h, np.arange(w) * ink.shape[1] // w
+    drawn = np.bincount(part[(ink > marks.INKED)[rows][:, columns]], minlength=count)
+    area, size = (np.bincount(p, minlength=count) for p in (part[core], part[part > 0]))
     keep = (area >= LEAST_PT2 * px * px) & (drawn < marks.INKED * size)
     if everywhere:
         keep &= np.bincount(part[blots], minlength=count) < 0.5 * area
     keep[0] = False
-    mine = distance(~keep[part]) < 1.5  # up to the places between which the border lies
+    mine = near(~keep[part], 1.5, strictly=True)  # up to the places between which the border lies
     chains: list[Floats] = []
     widths: list[float] = []
     bordered.fill(
@@ -100,33 +102,31 @@ def _without_grain(tone: Floats, px: float) -> Floats:
 
     Beside light things it stays as it is: they have borders of their own.
     """
-    dark = distance(tone >= LIGHT) > FALLS_PT * px
+    dark = ~near(tone >= LIGHT, FALLS_PT * px)
     share = blurred(dark.astype(np.float32), WIDE_PT * px, 1).astype(np.float64)
     around = blurred((tone * dark).astype(np.float32), WIDE_PT * px, 1) / np.maximum(share, 1e-6)
     differs = tone - around
     return np.where(dark, around + np.sign(differs) * np.maximum(np.abs(differs) - NOISE, 0.0), tone)
 
 
-def _around(tone: Floats, px: float) -> marks.Mask:
-    """Where it is dark all around, (h, w)."""
-    return np.asarray(blurred(tone.astype(np.float32), WIDE_PT * px, 1) >= AROUND)
+def _blots(tone: Floats, core: marks.Mask, deep: marks.Mask, black: float, px: float) -> marks.Mask:
+    """The black in the dark that is too little of it to be filled, (h, w).
 
-
-def _blots(tone: Floats, core: marks.Mask, black: float, px: float) -> marks.Mask:
-    """The black in the dark that is too little of it to be filled, (h, w); core: where the tone exceeds `black`."""
+    core: where the tone exceeds `black`; deep: where it is dark all around.
+    """
     of, boxes = labelled(core)
-    size = np.bincount(of.ravel(), minlength=len(boxes) + 1)
+    size = np.bincount(of[core], minlength=len(boxes) + 1)
     thing, boxes = labelled(tone > black - NEARLY)
-    whole = np.bincount(thing.ravel(), minlength=len(boxes) + 1)
+    whole = np.bincount(thing[thing > 0], minlength=len(boxes) + 1)
     dark = np.bincount(thing[core], minlength=len(boxes) + 1)
     little = (size < BLOT_PT2 * px * px)[of] | (dark < SHARE * whole)[thing]
-    return np.asarray(core & little & _around(tone, px))
+    return np.asarray(core & little & deep)
 
 
-def _flecks(value: Floats, tone: Floats, px: float) -> marks.Mask:
+def _flecks(value: Floats, tone: Floats, deep: marks.Mask, px: float) -> marks.Mask:
     """Small dark holes in the black, which is where value exceeds the level, (h, w)."""
-    hole, boxes = labelled((value <= marks.LEVEL) & _around(tone, px))
-    little = np.bincount(hole.ravel(), minlength=len(boxes) + 1) < FLECK_PT2 * px * px
+    hole, boxes = labelled((value <= marks.LEVEL) & deep)
+    little = np.bincount(hole[hole > 0], minlength=len(boxes) + 1) < FLECK_PT2 * px * px
     little[0] = False
     little[hole[tone < AROUND]] = False
     return np.asarray(little[hole])

@@ -5,6 +5,8 @@ scipy has the same, and takes longer to load than a drawing's marks take to be f
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import numpy.typing as npt
 
@@ -12,6 +14,8 @@ from penink_cli.ground._compiled import masks as _masks
 from penink_cli.ground.model import Floats
 
 Mask = npt.NDArray[np.bool_]
+
+_FEW = 20.0  # pixels: as far it is faster to look at all there are than for the nearest
 
 
 def labelled(mask: Mask) -> tuple[npt.NDArray[np.int32], npt.NDArray[np.int32]]:
@@ -38,6 +42,26 @@ def distance(mask: Mask) -> Floats:
     """
     out = np.empty(mask.shape)
     _masks.distance(_octets(mask), out)
+    return out
+
+
+def near(mask: Mask, reach: float, strictly: bool = False) -> Mask:
+    """Which pixels (h, w) are no further than `reach` from one outside the mask, `strictly`: nearer; those outside are.
+
+    The same as `distance(mask) <= reach`, in a fraction of the time where that is a few pixels.
+
+    >>> near(np.array([[True, False, True, True, True]]), 1.0).tolist()
+    [[True, True, True, False, False]]
+    """
+    if reach > _FEW:
+        away = distance(mask)
+        return away < reach if strictly else away <= reach
+    most = int(reach * reach) + 2  # of the squares of distances, which are whole
+    while most >= 0 and not (math.sqrt(most) < reach or (math.sqrt(most) == reach and not strictly)):
+        most -= 1
+    out = np.zeros(mask.shape, np.bool_)
+    if most >= 0:
+        _masks.within(_octets(mask), math.isqrt(most), most, out.view(np.uint8))
     return out
 
 
@@ -72,8 +96,8 @@ def opened(mask: Mask, radius: float) -> Mask:
     >>> opened(np.array([[1, 0, 0, 0], [1, 0, 1, 0], [1, 1, 1, 1], [0, 0, 1, 0]]) > 0, 1.0).astype(int).tolist()
     [[0, 0, 0, 0], [0, 0, 1, 0], [0, 1, 1, 1], [0, 0, 1, 0]]
     """
-    centres = distance(np.pad(mask, 1))[1:-1, 1:-1] > radius
-    return distance(~centres) <= radius
+    centres = ~near(np.pad(mask, 1), radius)[1:-1, 1:-1]
+    return near(~centres, radius)
 
 
 def grown(mask: Mask, steps: int) -> Mask:

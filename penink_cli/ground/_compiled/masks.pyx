@@ -12,7 +12,7 @@ def label(const unsigned char[:, ::1] mask, bint corners, int[:, ::1] part) -> i
     corners: whether those touch that have a corner in common. part: (h, w) the number of each pixel's, 0 for none.
     Returns how many there are.
     """
-    cdef Py_ssize_t h = mask.shape[0], w = mask.shape[1], i, j, k, top, at, count = 0
+    cdef Py_ssize_t h = mask.shape[0], w = mask.shape[1], i, j, k, top, row, column, count = 0
     cdef int number = 0
     cdef Py_ssize_t* waiting = NULL
     try:
@@ -31,10 +31,11 @@ def label(const unsigned char[:, ::1] mask, bint corners, int[:, ::1] part) -> i
                     count = 1
                     while count:
                         count -= 1
-                        at = waiting[count]
-                        for top in range(max(0, at // w - 1), min(h, at // w + 2)):
-                            for k in range(max(0, at % w - 1), min(w, at % w + 2)):
-                                if not corners and top != at // w and k != at % w:
+                        row = waiting[count] // w
+                        column = waiting[count] - row * w
+                        for top in range(max(0, row - 1), min(h, row + 2)):
+                            for k in range(max(0, column - 1), min(w, column + 2)):
+                                if not corners and top != row and k != column:
                                     continue
                                 if mask[top, k] and not part[top, k]:
                                     part[top, k] = number
@@ -67,20 +68,13 @@ def distance(const unsigned char[:, ::1] mask, double[:, ::1] out) -> None:
     Roerdink and Hesselink 2000). All in whole numbers, so that the nearest is the nearest.
     """
     cdef Py_ssize_t h = mask.shape[0], w = mask.shape[1], i, j, away, far = h + w
-    cdef Py_ssize_t* down = NULL
+    cdef int* down = NULL
     cdef Py_ssize_t* kept = NULL
     try:
-        down = <Py_ssize_t*>room(h * w, sizeof(Py_ssize_t))
+        down = <int*>room(h * w, sizeof(int))
         kept = <Py_ssize_t*>room(2 * w, sizeof(Py_ssize_t))
         with nogil:
-            for j in range(w):
-                away = far
-                for i in range(h):
-                    away = 0 if not mask[i, j] else min(far, away + 1)
-                    down[i * w + j] = away
-                for i in range(h - 1, -1, -1):
-                    away = 0 if not mask[i, j] else min(far, away + 1)
-                    down[i * w + j] = min(down[i * w + j], away)
+            count_down(mask, <int>far, down)
             for i in range(h):
                 nearest(down + i * w, w, kept, kept + w)
                 for j in range(w):
@@ -92,7 +86,67 @@ def distance(const unsigned char[:, ::1] mask, double[:, ::1] out) -> None:
         free(kept)
 
 
-cdef void nearest(const Py_ssize_t* down, Py_ssize_t w, Py_ssize_t* which, Py_ssize_t* begin) noexcept nogil:
+def within(const unsigned char[:, ::1] mask, int reach, int most, unsigned char[:, ::1] out) -> None:
+    """Which pixels (h, w) one outside the mask is so near to that the square of the distance is `most` at the most.
+
+    reach: pixels, the root of that rounded down, 1000 at the most.
+    """
+    cdef Py_ssize_t h = mask.shape[0], w = mask.shape[1], i, j, k
+    cdef int far = reach + 1, none = 1 << 30, square
+    cdef int* down = NULL
+    cdef int* squares = NULL
+    cdef int* best
+    cdef int* left
+    cdef int* right
+    try:
+        down = <int*>room(h * w, sizeof(int))
+        squares = <int*>room(2 * w + 2 * reach, sizeof(int))
+        best = squares + w + 2 * reach
+        with nogil:
+            count_down(mask, far, down)
+            for j in range(reach):
+                squares[j] = squares[reach + w + j] = none
+            for i in range(h):
+                left = down + i * w
+                for j in range(w):
+                    square = left[j] * left[j]
+                    squares[reach + j] = best[j] = square if left[j] < far else none
+                for k in range(1, reach + 1):
+                    left = squares + reach - k
+                    right = squares + reach + k
+                    square = <int>(k * k)
+                    for j in range(w):
+                        best[j] = min(best[j], min(left[j], right[j]) + square)
+                for j in range(w):
+                    out[i, j] = best[j] <= most
+    finally:
+        free(down)
+        free(squares)
+
+
+cdef void count_down(const unsigned char[:, ::1] mask, int far, int* down) noexcept nogil:
+    """How far up or down the nearest pixel outside the mask (h, w) is in its column, `far` at the most: (h, w)."""
+    cdef Py_ssize_t h = mask.shape[0], w = mask.shape[1], i, j
+    cdef int* row
+    cdef int* other
+    for i in range(h):  # row after row, and not column after column: that many pixels at a time
+        row = down + i * w
+        other = row - w
+        for j in range(w):
+            row[j] = far
+        if i > 0:
+            for j in range(w):
+                row[j] = min(far, other[j] + 1)
+        for j in range(w):
+            row[j] = row[j] if mask[i, j] else 0
+    for i in range(h - 2, -1, -1):
+        row = down + i * w
+        other = row + w
+        for j in range(w):
+            row[j] = min(row[j], other[j] + 1)
+
+
+cdef void nearest(const int* down, Py_ssize_t w, Py_ssize_t* which, Py_ssize_t* begin) noexcept nogil:
     """For each pixel of a row the one under or over which the nearest lies, so far down: `which`, (w,).
 
     begin: (w,) room for the pixel from which on each of those kept is the nearest.
@@ -103,7 +157,7 @@ cdef void nearest(const Py_ssize_t* down, Py_ssize_t w, Py_ssize_t* which, Py_ss
         while count:
             k = which[count - 1]
             # from `start` on j is nearer than k, rounded up
-            start = j * j + down[j] * down[j] - k * k - down[k] * down[k]
+            start = j * j - k * k + <Py_ssize_t>down[j] * down[j] - <Py_ssize_t>down[k] * down[k]
             start = 0 if start <= 0 else (start + 2 * (j - k) - 1) // (2 * (j - k))
             if start > begin[count - 1]:
                 break
