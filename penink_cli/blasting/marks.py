@@ -120,7 +120,7 @@ def fill(
     i = np.minimum(at.astype(np.int64), max(h - 2, 0))
     dark = tone > LEVEL
     # most of a picture is none of the thing
-    there, used = dark.any(axis=1), np.flatnonzero(dark.any(axis=0))
+    there, used = np.asarray(dark.any(axis=1)), np.flatnonzero(dark.any(axis=0))
     some = there[i] | there[np.minimum(i + 1, h - 1)]
     if not some.any():
         return
