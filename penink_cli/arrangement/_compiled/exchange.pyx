@@ -1,5 +1,11 @@
 # cython: boundscheck=False, wraparound=False, cdivision=True
-"""Compiled: where an arrangement may be looked at again, and a place in it exchanged for a better one."""
+"""Compiled: where an arrangement may be looked at again, and a place in it exchanged for a better one.
+
+    old   │         new   │         Segments of the old place that the new one lacks or moves are taken out and
+       ───•  •───      ───•───      vertices are moved. Then the new place's segments are put in, one after the other.
+          │               │         Each must fit: none may cross what is there. If one does not, all is put back as it
+                                    was.
+"""
 
 import numpy as np
 from libc.math cimport floor

@@ -1,5 +1,12 @@
 # cython: boundscheck=False, wraparound=False, cdivision=True
-"""Compiled: a few edges in a window, and the changes that may be made to them."""
+"""Compiled: a few edges in a window, and the changes that may be made to them.
+
+    unite(a, b)              pass_by(v)            split(e, v)             meeting(a, b)
+
+    ╲     ╱     ╲ ╱             v                        v                      ×
+     a───b   →   a            ╱   ╲   →  u───w   u──e──w → u─v─w              ╱   ╲     the ways into a and b
+    ╱     ╲     ╱ ╲          u     w                                         a─────b    meet at × if they go on
+"""
 
 import numpy as np
 from libc.math cimport INFINITY, fabs, sqrt

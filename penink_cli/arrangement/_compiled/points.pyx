@@ -1,5 +1,13 @@
 # cython: boundscheck=False, wraparound=False, cdivision=True
-"""Compiled: sub-pixel edge points and their links to neighbours. See gradient.py and chains.py."""
+"""Compiled: sub-pixel edge points and their links to neighbours. See gradient.py and chains.py.
+
+    dark     bright       The grey changes fastest on the edge ┊. On the axis nearer to the gradient g, here x, the
+       ┊                  slopes of a pixel b and of its neighbours a and c are read along g. A parabola through their
+    a  ┊b     c  → g      logarithms has its vertex at ×: that is the edge point. Forward along the edge is where the
+       ×                  dark side lies to the right on the screen, here downwards. The next point that way is
+       ┊                  `following`, the one behind `preceding`.
+       ↓ forward
+"""
 
 from libc.math cimport fabs, sqrt, sqrtf
 from penink_cli.ground._compiled.real cimport logarithm
@@ -49,9 +57,9 @@ def locate(float[:, ::1] smooth, int[:, ::1] pixel, double[:, ::1] out) -> None:
     """Place each edge pixel's point on the ridge of the gradient.
 
     Along the axis nearer to the gradient, the slope of three neighbouring pixels in the
-    gradient's direction is taken for a Gaussian, exact for a blurred step: a parabola through
-    the logarithms has its vertex on the edge, and its curvature tells the edge's width. (A
-    parabola through the slopes themselves pulls the point to the pixel's centre by up to 0.05.)
+    gradient's direction is taken for a Gaussian, which it is for a blurred step. A parabola through
+    the logarithms has its vertex on the edge, and its curvature tells the edge's width. A parabola
+    through the slopes themselves pulls the point to the pixel's centre by up to 0.05.
 
     pixel: (n, 2) int32, moved to the pixel that the point was taken from.
     out: (n, 5) x, y, gradient along x and y, width; a width of -1 drops the point.
@@ -147,11 +155,11 @@ def link(
     int[:, ::1] pixel, double[:, ::1] position, double[:, ::1] gradient, int[:, ::1] index, int[::1] following,
     int[::1] preceding,
 ) -> None:
-    """Give each point its nearest fellow forward and backward along the edge (dark side on the left).
+    """Give each point its nearest fellow forward and backward along the edge (forward: dark side on the right).
 
     Two points may be linked if their gradients agree within 90 degrees and each lies ahead of
-    the other's normal; the nearest in the 5 x 5 pixels around is taken (Devernay 1995), and only
-    what both sides choose is a link, so each point has at most one of each kind.
+    the other's normal. Each chooses the nearest in the 5 × 5 pixels around (Devernay 1995). Only
+    what both choose is a link, so each point has at most one of each kind.
 
     index: (h, w) -1, or the point of that pixel. following, preceding: (n,) filled, -1 for none.
     """

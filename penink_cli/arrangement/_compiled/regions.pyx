@@ -2,6 +2,11 @@
 """Compiled: the regions that a few edges part a window into, and what the camera's pixels see of each.
 
 Sides are told apart at `FINE` points a pixel along each axis.
+
+    a a a a│b b b      Where an edge passes between two points of a row, one run ends and another begins: a and b. A
+    a a a a│b b b      run of the next row hangs together with a run above unless an edge passes below every point that
+    ───────┘           they share: c with b, not with a. Runs that hang together are one region. A pixel sees of each
+    c c c c c c c      region what the camera's blur gives it of the region's points.
 """
 
 import numpy as np

@@ -1,5 +1,14 @@
 # cython: boundscheck=False, wraparound=False, cdivision=True
-"""Compiled: a place of the arrangement in a window, and what it takes to describe the photo by it. See junctions.py."""
+"""Compiled: a place of the arrangement in a window, and what it takes to describe the photo by it. See junctions.py.
+
+    ┌ halo ─────────────┐
+    │  ┌ compared ───┐  │          A site's vertices (•) and what lies `around` them are compared with the photo. The
+    │  │     •───────┼──┼───○      halo is as wide as blur reaches: the model is rendered there, and nothing is
+    │  │    ╱        │  │          compared. Vertices of the inner box may move. An edge may lead out to a vertex that
+    │  └───╱─────────┘  │          stays (○). Then its line, by a normal and an offset, holds the end that moves, the
+    └─────╱─────────────┘          more the longer the edge goes on outside.
+         ○
+"""
 
 from libc.math cimport INFINITY, ceil, floor, fmax, fmin
 from penink_cli.ground._compiled.real cimport exponential, logarithm

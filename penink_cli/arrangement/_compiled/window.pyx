@@ -2,6 +2,10 @@
 """Compiled: what a few edges would look like through the camera, and where they must lie to look like the photo.
 
 See junctions.py.
+
+        δ ↑    ↑ (1 − t) δ      Vertex v moves aside by δ: what lies the part t along its edge to u moves by (1 − t) δ.
+    v ────┼────┼──────── u      Where an edge moves aside by d, the picture changes by d times the step of grey across
+          0    t         1      it, blurred: that is the edge's part of the Jacobian.
 """
 
 import numpy as np

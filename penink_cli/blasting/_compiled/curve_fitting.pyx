@@ -1,6 +1,15 @@
 # cython: boundscheck=False, wraparound=False, cdivision=True
 """Compiled loop: cubic Bézier segments through runs of points. Only `curve_fitting` imports this module.
 
+    1 · · · · 2      `segment`: 0 and 3 are the first and the last point. The points there tell the directions to 1 and
+    ·  ╭───╮  ·      from 2: only how far off 1 and 2 are is fitted. A run that no cubic fits is split at its worst
+    · ╱  ×  ╲ ·      point ×, and both parts have one direction there.
+    0         3
+
+           1                    `over_chord`: 1 and 2 stand over the thirds of the chord from 0 to 3, p and q to the
+         p ┆    2               left of it. So the curve is the graph of a polynomial over its chord, and two numbers
+    0 ─────┴────┴ q ──── 3      tell all of it.
+
 Arrays are (n, 2) x, y in the same unit, whatever it is; parameters run 0 … 1 along a segment.
 """
 

@@ -2,6 +2,12 @@
 """Compiled: example strokes placed one after the other where most of the tone is lacking, bent along a field.
 
 Only `stroke_set` imports this module. One thread, one order: each stroke depends on all before it.
+
+    way 1        way 0      From the place • where most of the tone is lacking the field is followed both ways, a point
+            v│              a step. An example lies along x. What is u along it and v aside comes to the place u along
+      ╭───•──┴─────╮        the way, v at right angles to it. Of a few examples the one is drawn whose ink is lacking
+     ╱    └u┘       ╲       most. Its ink is taken from what the cells around lack, and the next place is sought.
+    ╱                ╲
 """
 
 from libc.math cimport fabs, sqrt

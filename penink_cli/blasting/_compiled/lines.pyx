@@ -1,6 +1,13 @@
 # cython: boundscheck=False, wraparound=False, cdivision=True
 """Compiled loops that make pen strokes of polylines: evening and smoothing them, cutting, fitting cubics.
 
+    ────────   ───────────   ────      Lines are cut to a hand's length. Of some places for a cut the one is taken that
+    ───   ──────────   ──────────      is farthest from the ends on the lines beside, along the line and across.
+
+          bow                      A stroke is not drawn on its line but as a hand would draw it: shifted to the side,
+        ╭─────╮   ╱ tilt           tilted about its middle, bowed. Cubics are fitted to that, as many as the tolerance
+    ───╯───────╰─╱── the line      asks.
+
 Only `pen_lines` imports this module.
 """
 

@@ -2,6 +2,12 @@
 """Compiled: lines followed through the responses of a bank of oriented filters. See tracing.py.
 
 Directions are counted in quarters of a bin: 4 n of them are half a turn, 8 n a whole one.
+
+             ╱         One step of a walk: of five directions, three quarters of a bin apart, the one whose response a
+           ╱           pixel on is greatest. Straight on is preferred a little. Then the place is moved across the
+    • ────────         line, by at most .35 pixel, to the vertex of a parabola through three responses. A line ends
+           ╲           where it has been weak for `WEAK` steps, or along another for `TAKEN`.
+             ╲
 """
 
 from libc.math cimport sqrt
