@@ -16,13 +16,14 @@ rules/                  best, or what --rule says
     candidates              either as strokes that walls have cut (walls.cut)
     sheet.place             trimmed to the runs that help (_compiled/placing); low_pass: what the eye sees
   stroke_set            example strokes bent along a field
-  engraving             lines whose width is the tone; taking_turns: which go on where it is light; rims: along borders
+  engraving             lines whose width is the tone
+    tracks                  where they run; taking_turns: which go on where it is light; rims: along borders
   tile                  textures of strokes by priority, the paper's own rule; scaling: those that grow with the picture
   pressure              the hand's, at last
   threshold             what a picture that draws itself does; screens is its table, constants its numbers
 outlines                strokes along edges
 balancing               plates of several inks looked at together: tones corrected, strokes pressed
 
-For all of these curves cuts and samples Béziers, and curve_fitting makes them. reach says which tones a texture can
-make, pens gives it finer ones for small prints.
+For all of these curves cuts and samples Béziers, curve_fitting makes them, polylines tells what lies along samples.
+reach says which tones a texture can make, pens gives it finer ones for small prints.
 """

@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from penink_cli.blasting import curves
-from penink_cli.blasting.sheet import SIGMA_PT, Cells, Sheet
+from penink_cli.blasting.sheet import SIGMA_PT, Cells, Sheet, look_up
 from penink_cli.composition.filters import blurred
 from penink_cli.ground.model import Floats, Ints, Strokes
 
@@ -49,10 +49,10 @@ def swollen(sheet: Sheet, strokes: Strokes, tone: Floats, swell: float) -> Strok
     factor = np.clip(1 + np.float32(swell) * (ratio - 1), np.float32(LEAST), np.float32(MOST))
     split, owner = _split(strokes, factor, sheet)
     knots = split.points[np.repeat(split.first[:-1], np.diff(split.knots)) + 3 * curves.ramp(np.diff(split.knots))]
-    own = strokes.widths[owner] * _look_up(factor, knots, sheet)
+    own = strokes.widths[owner] * look_up(factor, knots, sheet.width, sheet.height)
     correction: Cells = np.ones((sheet.rows, sheet.columns), np.float32)
     for turn in range(ROUNDS + 1):
-        widths = own * _look_up(correction, knots, sheet)
+        widths = own * look_up(correction, knots, sheet.width, sheet.height)
         drawn = split.swelling(np.maximum(np.round(widths, 2), 0.05))
         if turn == ROUNDS:
             break
@@ -107,7 +107,7 @@ def _parts(control: Floats, widths: Floats, factor: Cells, sheet: Sheet) -> Ints
         s = 1 - t
         place = s * s * s * control[:, 0] + 3 * s * s * t * control[:, 1]
         place = place + 3 * s * t * t * control[:, 2] + t * t * t * control[:, 3]
-        wanted[k] = _look_up(factor, place, sheet) * widths
+        wanted[k] = look_up(factor, place, sheet.width, sheet.height) * widths
     parts = most.copy()
     left = np.arange(len(most))
     for n in KNOTS[:-1]:
@@ -121,19 +121,6 @@ def _parts(control: Floats, widths: Floats, factor: Cells, sheet: Sheet) -> Ints
         parts[left[good]] = n
         left = left[~good]
     return parts
-
-
-def _look_up(values: Cells, points: Floats, sheet: Sheet) -> Floats:
-    """Values (h, w) that fill the sheet at points (n, 2), bilinear."""
-    h, w = values.shape
-    x = np.clip(points[:, 0] * (w / sheet.width) - 0.5, 0, w - 1)
-    y = np.clip(points[:, 1] * (h / sheet.height) - 0.5, 0, h - 1)
-    j, i = x.astype(np.int64), y.astype(np.int64)
-    u, v = x - j, y - i
-    right, below = np.minimum(j + 1, w - 1), np.minimum(i + 1, h - 1)
-    top = values[i, j] * (1 - u) + values[i, right] * u
-    bottom = values[below, j] * (1 - u) + values[below, right] * u
-    return np.asarray(top * (1 - v) + bottom * v)
 
 
 def _ink(sheet: Sheet, strokes: Strokes) -> None:

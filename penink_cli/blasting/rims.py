@@ -11,7 +11,7 @@ from itertools import pairwise
 import numpy as np
 import numpy.typing as npt
 
-from penink_cli.blasting import curves
+from penink_cli.blasting import curves, polylines
 from penink_cli.blasting.sheet import Cells
 from penink_cli.blasting.walls import BESIDE_PT, Walls
 from penink_cli.geometry.trails import trails
@@ -48,7 +48,7 @@ def along_edges(borders: Walls, tone: Cells, within: float = EDGE_PT, darkest_fr
     out = []
     for trail, _ in trails(vertices, number.reshape(-1, 2), 0.0):
         middle = _smoothed(_sampled(vertices[trail]))
-        normal = _normals(middle)
+        normal = polylines.normals(middle, np.array([0, len(middle)]))
         left, right = (_at(borders, tone, middle + side * BESIDE_PT * normal) for side in (-1.0, 1.0))
         for side, own, other in ((-1.0, left, right), (1.0, right, left)):
             for low, high in _runs((own - other > DARKER) & (own > darkest_from)):
@@ -73,14 +73,6 @@ def _smoothed(points: Floats) -> Floats:
         points = points.copy()
         points[1:-1] = (points[:-2] + 2 * points[1:-1] + points[2:]) / 4
     return points
-
-
-def _normals(points: Floats) -> Floats:
-    """Unit normals at the samples of a polyline."""
-    padded = np.concatenate([points[:1], points, points[-1:]])
-    ahead = padded[2:] - padded[:-2]
-    length = np.maximum(np.sqrt((ahead * ahead).sum(axis=1)), 1e-9)[:, None]
-    return np.column_stack([-ahead[:, 1], ahead[:, 0]]) / length
 
 
 def _at(borders: Walls, tone: Cells, points: Floats) -> Floats:

@@ -288,6 +288,19 @@ def coloured(batch: Ints, block: Ints) -> list[list[Ints]]:
     return groups
 
 
+def look_up(values: npt.NDArray[np.floating], points: Floats, width: float, height: float) -> Floats:
+    """Values (rows, columns) that fill width × height at points (n, 2), bilinear."""
+    rows, columns = values.shape
+    x = np.clip(points[:, 0] * (columns / width) - 0.5, 0, columns - 1)
+    y = np.clip(points[:, 1] * (rows / height) - 0.5, 0, rows - 1)
+    j, i = x.astype(np.int64), y.astype(np.int64)
+    u, v = x - j, y - i
+    right, below = np.minimum(j + 1, columns - 1), np.minimum(i + 1, rows - 1)
+    top = values[i, j] * (1 - u) + values[i, right] * u
+    bottom = values[below, j] * (1 - u) + values[below, right] * u
+    return np.asarray(top * (1 - v) + bottom * v)
+
+
 def resample(tone: Floats, rows: int, columns: int) -> Floats:
     """`tone` stretched to rows × columns: the mean over each cell where it shrinks, bilinear where it grows."""
     return _resample_rows(_resample_rows(tone, rows).T, columns).T.copy()

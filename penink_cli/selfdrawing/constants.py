@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from penink_cli.blasting import constants, engraving, form, pen_lines, phase, screens, shares, taking_turns
+from penink_cli.blasting import constants, engraving, form, pen_lines, phase, screens, shares, taking_turns, tracks
 from penink_cli.blasting import telling as beside
 from penink_cli.ground import pens
 from penink_cli.ground.device import FILLED, MEAN
@@ -20,9 +20,9 @@ OTHERS: dict[str, Any] = {
     "SPAN_PARTS": screens.SPAN_PARTS, "EVER": screens.EVER, "T1": T1, "ANGLES": ANGLES,
     "LADDER": telling.LADDER, "LINE_STEP": 1.5, "LINE_FINEST": pressed.FINEST, "LINE_TAPER": pressed.TIP_PT,
     "LINE_TIP": pressed.TIP, "WHITE_PEN": beside.WHITE.pen_pt, "WHITE_FROM": beside.DARK, "WHITE_FULL": beside.FULL,
-    "MOST_TONE": engraving.MOST, "CLOSED": engraving.CLOSED,
+    "MOST_TONE": engraving.MOST, "CLOSED": tracks.CLOSED,
     "LEAST_TONE": engraving.LEAST_TONE, "TAPER_PT": engraving.TAPER_PT, "TAPER_SHARE": engraving.TAPER_SHARE,
-    "TIP_PT": engraving.TIP_PT, "BLUNT": engraving.BLUNT, "WAVER_PT": engraving.WAVER_PT,
+    "TIP_PT": engraving.TIP_PT, "BLUNT": engraving.BLUNT, "WAVER_PT": tracks.WAVER_PT,
     "CROSS_ANGLE": engraving.CROSS_ANGLE,
     # dashes: least length, and the shortest and the longest stretch of line that holds one
     "DASH_PT": 3.0, "PERIOD_PT": 11.0, "LONGEST_PERIOD_PT": 40.0,
@@ -31,7 +31,7 @@ OTHERS: dict[str, Any] = {
     # what is shorter than so many of them is a dash
     "DASHES": 4.0,
     # a dash is tapered over this part of its length at both ends; waver goes to and fro over so many points
-    "DASH_TAPER": 0.25, "GRAIN": 4 * engraving.WAVER_LENGTH_PT,
+    "DASH_TAPER": 0.25, "GRAIN": 4 * tracks.WAVER_LENGTH_PT,
     # tone steps by so many 255ths over an edge at which lines end
     "WALL": 26,
 }  # fmt: skip
