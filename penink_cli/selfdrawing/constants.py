@@ -41,8 +41,8 @@ FOLLOWING: dict[str, Any] = {
     "COARSE_SWEEPS": phase.COARSE_SWEEPS, "SWEEPS": phase.SWEEPS, "LINE_SMOOTHING": pen_lines.SMOOTHING,
     "GIVES_WAY": shares.GIVES_WAY, "BACK_AFTER": shares.BACK_AFTER,
     "FAINT": form.FAINT, "SPARSEST": form.SPARSEST, "RAGGED": form.RAGGED, "STROKE_PT": form.STROKE_PT,
-    "EVENINGS": engraving.EVENINGS, "EVENED": engraving.EVENED,
-    "PROLONGED": engraving.PROLONGED, "ROOM": engraving.ROOM,
+    "EVENINGS": tracks.EVENINGS, "EVENED": tracks.EVENED,
+    "PROLONGED": tracks.PROLONGED, "ROOM": tracks.ROOM,
     "CELL_PART": taking_turns.CELL, **taking_turns.SEARCH,
     # cells of tone between the places at which a field is looked up
     "FIELD_CELLS": 3,
