@@ -21,8 +21,10 @@ from PIL import Image
 
 from penink_cli.blasting.blast import blast
 from penink_cli.formats import archive, illustration, parts
+from penink_cli.ground.model import GreyImage, Illustration, Layer
 from penink_cli.options.inputs import read_illustration
 from penink_cli.options.textures import find_texture
+from penink_cli.selfdrawing import postscript
 from tests.benchmarks.drawing import seen
 from tests.blasting import measures
 
@@ -129,11 +131,38 @@ def similarity(names: list[str], folder: Path) -> None:
     print("mean difference " + " / ".join(f"{v:+.3f}" for v in np.mean(rows, axis=0)))
 
 
+def counted(page: np.ndarray) -> str:
+    """Courses in the height and bricks across, of ink (h, w) on a light flat wall, 1440 samples across."""
+    from tests.textures.test_textures import period
+
+    course = period(page.mean(axis=1))
+    # bricks of every second course, which lie below one another; of all places to begin, where they are plainest
+    rows = np.arange(len(page))
+    plain = [page[(rows + shift) % (2 * course) < course].mean(axis=0) for shift in range(0, 2 * course, 2)]
+    across = 2 * period(max(plain, key=np.var).reshape(-1, 2).mean(axis=1))
+    return f"{len(page) / course:.1f}, {page.shape[1] / across:.1f}"
+
+
+def on_a_printer(inches: float) -> np.ndarray:
+    """The ink (960, 1440) of a light flat wall that an EPS of natural width 4 in draws by itself, 600 dpi."""
+    from tests.selfdrawing.pictures import ghostscript
+
+    samples = GreyImage(np.full((16, 24), 13, np.uint8), 15)
+    picture = Illustration(288.0, 192.0, (Layer(samples, None, find_texture("brick"), "brick"),))
+    size = f"<< /PageSize [{72 * inches} {48 * inches}] >> setpagedevice {inches / 4} dup scale\n"
+    with tempfile.TemporaryDirectory() as folder:
+        out = Path(folder) / "page.pbm"
+        program = b"%!\n" + size.encode() + postscript.write(picture)
+        ghostscript(program, "-sDEVICE=pbmraw", "-r600", f"-sOutputFile={out}")
+        page = Image.open(out).convert("L").resize((1440, 960), Image.Resampling.BOX)
+    return 1 - np.asarray(page, float) / 255
+
+
 def wall(names: list[str], folder: Path) -> None:
-    print("brick, natural width 4 in, on a ramp with a shadow; courses from a light flat")
-    print("| inches | courses in the height | tone RMS, bias, worst % | s of processor | crosshatch |")
-    print("| --- | --- | --- | --- | --- |")
-    from tests.textures.test_textures import coverage, period
+    print("brick, natural width 4 in, on a ramp with a shadow; courses in the height, bricks across of a light flat")
+    print("| inches | courses, bricks | tone RMS, bias, worst % | s of processor | crosshatch | EPS: courses, bricks |")
+    print("| --- | --- | --- | --- | --- | --- |")
+    from tests.textures.test_textures import coverage
 
     brick, crosshatch = find_texture("brick"), find_texture("crosshatch")
     for inches in (2, 4, 8, 16):
@@ -148,12 +177,11 @@ def wall(names: list[str], folder: Path) -> None:
         times.append(time.process_time())
         rms, bias, worst = measures.tone_figures(strokes, tone)
         flat = blast(np.full((160, 240), 0.12), *size, None, brick, natural_pt=288, device_dpi=None)
-        courses = 960 / period(coverage(flat, 960, 1440).mean(axis=1))
         spent, other = np.diff(times)
         print(
-            f"| {inches} | {courses:.1f} | {rms:.2f}, {bias:+.2f}, {worst:.1f} | {spent:.2f} | {other:.2f} |",
-            flush=True,
-        )
+            f"| {inches} | {counted(coverage(flat, 960, 1440))} | {rms:.2f}, {bias:+.2f}, {worst:.1f} "
+            f"| {spent:.2f} | {other:.2f} | {counted(on_a_printer(inches))} |", flush=True,
+        )  # fmt: skip
 
 
 PARTS = {"sizes": sizes, "similarity": similarity, "wall": wall}

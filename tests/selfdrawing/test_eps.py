@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 from penink_cli.ground.errors import LimitError
-from penink_cli.ground.model import GreyImage, OutlineChoice
+from penink_cli.ground.model import GreyImage, Layer, OutlineChoice
 from penink_cli.options.textures import find_texture
 from penink_cli.selfdrawing import data, packer, postscript
-from tests.selfdrawing.pictures import expected_tone, ghostscript, illustration, printed, two_layers
+from tests.selfdrawing.pictures import CROSSHATCH, expected_tone, ghostscript, illustration, printed, two_layers
 
 CROP = ("-dEPSCrop",)
 
@@ -192,3 +192,14 @@ def test_lzw_is_undone_by_a_device(size):
 { /F currentfile /ASCII85Decode filter /LZWDecode filter def { F read { O exch write } { exit } ifelse } loop } exec
 """
     assert ghostscript(program + packer.ascii85(packer.lzw(data)), "-dNODISPLAY") == data
+
+
+def test_slow_ramps_of_few_levels_have_no_stairs():
+    """What a device is sent of a ramp in 16 levels is nearer to the ramp than the levels are, by more than half."""
+    x = (np.arange(128) + 0.5) / 128
+    ramp = np.tile(0.3 + 0.3 * x, (96, 1))
+    kept = GreyImage(np.rint(15 * ramp).astype(np.uint8), 15)
+    sent, _ = data.as_sent(Layer(kept, None, CROSSHATCH, levels=16))
+    inner = (slice(8, -8), slice(24, -24))  # the first and last levels have a neighbour on one side only
+    stairs, eased = (np.sqrt(np.mean((image.grey - ramp)[inner] ** 2)) for image in (kept, sent))
+    assert eased < 0.4 * stairs

@@ -301,7 +301,10 @@ def period(profile: np.ndarray) -> int:
 def test_a_wall_is_the_same_wall_at_every_size(name, course):
     """A light flat tone shows little but joints: as many courses from top to bottom, whatever the size."""
     found, tone = find_texture(name), np.full((160, 240), 0.12)
-    for inches, natural, times in ((2, 288, 1), (4, 288, 1), (8, 288, 1), (4, 576, 2)):
-        large = blast(tone, 72 * inches, 48 * inches, None, found, natural_pt=natural, device_dpi=None)
+    for inches, natural, times, rule in (
+        (2, 288, 1, "best"), (4, 288, 1, "best"), (8, 288, 1, "best"), (4, 576, 2, "best"),
+        (2, 288, 1, "threshold"), (8, 288, 1, "threshold"),
+    ):  # fmt: skip
+        large = blast(tone, 72 * inches, 48 * inches, None, found, natural_pt=natural, device_dpi=None, rule=rule)
         lag = period(coverage(large, 960, 1440).mean(axis=1))
-        assert 192 / course * times == pytest.approx(960 / lag, abs=1), (inches, natural)
+        assert 192 / course * times == pytest.approx(960 / lag, abs=1), (inches, natural, rule)
