@@ -18,6 +18,7 @@ from pathlib import Path
 
 import numpy as np
 from PIL import Image
+from scipy.ndimage import gaussian_filter1d
 
 from penink_cli.blasting.blast import blast
 from penink_cli.formats import archive, illustration, parts
@@ -131,16 +132,21 @@ def similarity(names: list[str], folder: Path) -> None:
     print("mean difference " + " / ".join(f"{v:+.3f}" for v in np.mean(rows, axis=0)))
 
 
-def counted(page: np.ndarray) -> str:
-    """Courses in the height and bricks across, of ink (h, w) on a light flat wall, 1440 samples across."""
-    from tests.textures.test_textures import period
+def repeats(profile: np.ndarray) -> int:
+    """The first lag at which a profile is half as much like itself again as it ever is."""
+    flat = gaussian_filter1d(profile, 2) - gaussian_filter1d(profile, 120)
+    like = np.array([1.0, *(np.mean(flat[k:] * flat[:-k]) / np.mean(flat * flat) for k in range(1, len(flat) // 2))])
+    peaks = [k for k in range(24, len(like) - 9) if like[k] == like[k - 8 : k + 9].max()]
+    return next(k for k in peaks if like[k] > max(like[peaks]) / 2)
 
-    course = period(page.mean(axis=1))
+
+def counted(page: np.ndarray) -> str:
+    """Courses in the height and bricks across, of ink (h, w) on a light flat wall."""
+    course = repeats(page.mean(axis=1))
     # bricks of every second course, which lie below one another; of all places to begin, where they are plainest
     rows = np.arange(len(page))
     plain = [page[(rows + shift) % (2 * course) < course].mean(axis=0) for shift in range(0, 2 * course, 2)]
-    across = 2 * period(max(plain, key=np.var).reshape(-1, 2).mean(axis=1))
-    return f"{len(page) / course:.1f}, {page.shape[1] / across:.1f}"
+    return f"{len(page) / course:.1f}, {page.shape[1] / repeats(max(plain, key=np.var)):.1f}"
 
 
 def on_a_printer(inches: float) -> np.ndarray:
