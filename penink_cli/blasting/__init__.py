@@ -23,6 +23,7 @@ rules/                  best, or what --rule says
   threshold             what a picture that draws itself does; screens is its table, constants its numbers
 outlines                strokes along edges
 balancing               plates of several inks looked at together: tones corrected, strokes pressed
+  frame_ends              and drawn on to the frame
 
 For all of these curves cuts and samples Béziers, curve_fitting makes them, polylines tells what lies along samples.
 reach says which tones a texture can make, pens gives it finer ones for small prints.

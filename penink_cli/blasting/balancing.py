@@ -18,6 +18,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from penink_cli.blasting import curves
+from penink_cli.blasting.frame_ends import drawn_on
 from penink_cli.blasting.sheet import EYE_PT, Cells, coverage, resample
 from penink_cli.composition import separation
 from penink_cli.composition.filters import Picture, blurred, enlarged, shrunk
@@ -31,7 +32,7 @@ PRINT_PT, PLACE_PT = 0.24, 1.5
 #: How far strokes are widened or narrowed in all, in parts of their width; few are by so much.
 PRESSURE = 0.4
 #: How often the print is looked at, and the steps of the conjugate gradients each time.
-ROUNDS, STEPS = 6, 12
+ROUNDS, STEPS = 6, 20
 #: The price of changing a stroke's width by all of it, as differences of colour summed over places.
 PRICE = 10.0
 #: What is off by more counts by its size, and by less by its square: of a place that no pressing mends, such as a dark
@@ -150,11 +151,11 @@ class Handles:
 
 
 def pressed(strokes: Strokes, handles: Handles, factor: Floats) -> Strokes:
-    """The strokes, wider by that part (count,) of their width."""
+    """The strokes, wider by that part (count,) of their width, drawn on to the frame."""
     knots = np.maximum(np.round(strokes.at_knots * (1.0 + factor[handles.of_knot]), 2), LEAST_PT)
     if strokes.knot_widths is not None:
-        return strokes.swelling(knots)
-    return replace(strokes, widths=knots[strokes.knots[:-1]])
+        return drawn_on(strokes.swelling(knots))
+    return drawn_on(replace(strokes, widths=knots[strokes.knots[:-1]]))
 
 
 def _handles(strokes: Strokes, rows: int, columns: int) -> Handles:

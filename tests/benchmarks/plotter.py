@@ -11,6 +11,7 @@ import re
 import subprocess
 import sys
 import tempfile
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -41,6 +42,9 @@ def drawings() -> dict[str, Strokes]:
         "dots": blast(tone, 144, 144, None, find_texture("stipple"), device_dpi=None),
         "hatching": blast(tone, 144, 144, None, find_texture("crosshatch"), device_dpi=None),
         "along a form": blast(tone, 144, 144, None, find_texture("form"), device_dpi=None, directions=field),
+        "engraving": replace(
+            blast(tone, 144, 144, None, find_texture("engraving"), device_dpi=None, directions=field), knot_widths=None
+        ),
     }
     return {name: ordered(strokes, improve=False) for name, strokes in made.items()}
 

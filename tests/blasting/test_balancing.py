@@ -12,6 +12,7 @@ from scipy.ndimage import gaussian_filter
 from penink_cli.blasting import balancing
 from penink_cli.blasting.balancing import Plate, balanced, corrected
 from penink_cli.blasting.blast import blast
+from penink_cli.blasting.frame_ends import drawn_on
 from penink_cli.formats import pgm, strokes
 from penink_cli.ground.colour import encoded, linear
 from penink_cli.ground.model import GreyImage, Strokes, turned
@@ -63,7 +64,8 @@ def test_pressed_plates_print_truer_colours(plates):
     after = off([replace(plate, strokes=own) for plate, own in zip(plates, pressed, strict=True)])
     assert after < 0.6 * off(plates)
     for plate, own in zip(plates, pressed, strict=True):
-        assert np.array_equal(own.points, plate.strokes.points)
+        moved = (own.points != plate.strokes.points).any(axis=1)  # drawn on to the frame
+        assert np.minimum(own.points, 108 - own.points).min(axis=1)[moved].max(initial=0) < 0.6
         factor = own.widths / plate.strokes.widths
         assert np.abs(factor - 1).max() <= balancing.PRESSURE + 0.01 / plate.strokes.widths.min()
         assert np.percentile(np.abs(factor - 1), 50) < 0.2
@@ -107,6 +109,33 @@ def test_outlines_that_are_there_count_and_a_plate_may_be_empty(plates):
     assert len(beside[2]) == 0
     right = plates[1].strokes.points[plates[1].strokes.first[:-1], 0] > 64
     assert beside[1].widths[right].mean() < 0.97 * alone[1].widths[right].mean()
+
+
+def test_ends_near_the_frame_are_drawn_on_to_it_and_no_ink_over_it():
+    rng = np.random.default_rng(3)
+    ends = rng.uniform(0.6, 59.4, (500, 2, 2))
+    thirds = np.linspace(0, 1, 4)[None, :, None]
+    chains = ends[:, :1] + thirds * (ends[:, 1:] - ends[:, :1])
+    points = np.concatenate([chains.reshape(-1, 2), [[0.5, 0.5]]])
+    first = np.append(np.arange(501) * 4, 2001)
+    before = Strokes(60.0, 60.0, points, first, np.append(rng.uniform(0.1, 0.9, 500), 0.3))
+    after = drawn_on(before)
+    moved = (after.points != before.points).any(axis=1)
+    assert not moved[-1] and not moved[:-1][np.arange(2000) % 4 % 3 > 0].any()  # dots, and what is between ends
+    assert 10 < moved.sum() < 200
+    half = np.repeat(before.widths, np.diff(first)) / 2
+    gaps = [np.minimum(s.points, 60 - s.points).min(axis=1) - half for s in (before, after)]
+    assert (np.abs(gaps[1][moved] - 0.01) < 1e-9).all() and (gaps[0][moved] < 0.61).all()
+    inside = gaps[0] > 0.01
+    assert (gaps[1][inside] > 0.0099).all()
+    way = np.diff(ends, axis=1)[:, 0]
+    way /= np.hypot(way[:, :1], way[:, 1:])
+    out = np.concatenate([-way, way])  # of both ends, and what lies before each there
+    at = np.concatenate([ends[:, 0], ends[:, 1]])
+    place = np.concatenate([first[:-2], first[:-2] + 3])
+    before_it = np.where(out > 0, 60 - at, at) - half[place, None] - 0.01
+    wanted = ((before_it > 0) & (before_it < 0.59) & (np.abs(out) > 0.6)).any(axis=1) & (before_it > 0.6).any(axis=1)
+    assert wanted.sum() > 10 and moved[place[wanted]].all()
 
 
 def test_least_squares_and_the_smallest_change_are_numpys():
