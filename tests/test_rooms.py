@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import re
 from collections.abc import Iterator
+from functools import lru_cache
 from pathlib import Path
 
 import pytest
@@ -61,12 +62,15 @@ def _cython(path: str, text: str) -> Iterator[Import]:
         yield path, module, text.count("\n", 0, match.start()) + 1
 
 
-def _imports() -> Iterator[Import]:
+@lru_cache
+def _imports() -> tuple[Import, ...]:
+    found: list[Import] = []
     for path in sorted(HOUSE.rglob("*")):
         if path.suffix == ".py":
-            yield from _python(path)
+            found += _python(path)
         if path.suffix in (".pyx", ".pxd") or (path.suffix == ".py" and path.name.startswith("_")):
-            yield from _cython(str(path), path.read_text("utf-8"))
+            found += _cython(str(path), path.read_text("utf-8"))
+    return tuple(found)
 
 
 def _room(path: str) -> str:

@@ -52,9 +52,10 @@ def light_and_around(drawn: Strokes, diameter: float) -> tuple[float, float]:
     return 1 - float(ink[r < diameter / 2].mean()), float(ink[around].mean())
 
 
-@pytest.mark.parametrize(
-    "texture", ["crosshatch", "parallel", "form", "engraving", "stipple", "fur", "scribble", "brick"]
-)
+SOME, OTHERS = ("crosshatch", "engraving", "stipple"), ("parallel", "form", "fur", "scribble", "brick")
+
+
+@pytest.mark.parametrize("texture", [*SOME, *(pytest.param(name, marks=pytest.mark.slow) for name in OTHERS)])
 @pytest.mark.parametrize("diameter", [2, 3, 4, 6, 8, 12])
 def test_a_white_disc_in_black_is_white_and_the_black_beside_it_black(texture, diameter):
     drawn = blast(1 - disc(diameter), SIDE, SIDE, None, find_texture(texture), device_dpi=None)

@@ -204,7 +204,7 @@ def test_samples_are_small():
     assert len(compact.samples_bytes(white)) < 30
 
 
-@pytest.mark.parametrize("seed", range(40))
+@pytest.mark.parametrize("seed", [*range(10), *(pytest.param(k, marks=pytest.mark.slow) for k in range(10, 40))])
 def test_edges_come_back_exactly_and_in_an_order_of_their_own(seed):
     edges = random_arrangement(seed, 80, 60)
     packed = compact_edges.edges_bytes(edges, 80, 60)

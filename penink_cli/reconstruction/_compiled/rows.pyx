@@ -139,6 +139,9 @@ def rows(
     cdef int[32] place
     cdef int[4] down
     cdef bint matters = False
+    cdef float[:, ::1] x_plain = x.plain, y_plain = y.plain
+    cdef double[:, ::1] x_cubic = x.cubic, x_bspline = x.bspline
+    cdef int[::1] x_cell = x.cell, y_cell = y.cell, x_base = x.base
     cdef float share = 1.0 / (fine * fine)
     cdef int last_x = tile.scene.width - 1
     cdef int last_y = tile.scene.height - 1
@@ -147,19 +150,19 @@ def rows(
             for px in range(weight.shape[1]):
                 w = &weight[py, px, 0]
                 for i in range(5):
-                    v = y.plain[pixels[0] + py, i]
+                    v = y_plain[pixels[0] + py, i]
                     for j in range(5):
-                        w[5 * i + j] = v * x.plain[pixels[1] + px, j]
+                        w[5 * i + j] = v * x_plain[pixels[1] + px, j]
         for a in range(tiles[0], tiles[1]):
             at_y = y.first[a]
             ny = y.first[a + 1] - at_y
-            tile.place_in_row(y.cell[a], &y.where[at_y], ny)
+            tile.place_in_row(y_cell[a], &y.where[at_y], ny)
             for b in range(tiles[2], tiles[3]):
-                if tile.scene.empty_around(x.cell[b], y.cell[a]):
+                if tile.scene.empty_around(x_cell[b], y_cell[a]):
                     continue
                 at_x = x.first[b]
                 nx = x.first[b + 1] - at_x
-                tile.place(x.cell[b], &x.where[at_x], nx)
+                tile.place(x_cell[b], &x.where[at_x], nx)
                 if not tile.see():
                     continue
                 matters = True
@@ -170,16 +173,16 @@ def rows(
                     k = at_x + min(c, nx - 1)
                     pixel[c] = k // fine - pixels[1]
                     for j in range(4):
-                        columns_c[8 * j + c] = <float>x.cubic[k, j]
-                        columns_b[8 * j + c] = <float>x.bspline[k, j]
-                        place[4 * c + j] = min(last_x, max(0, x.cell[b] - 1 + j)) - x.base[k // fine]
+                        columns_c[8 * j + c] = <float>x_cubic[k, j]
+                        columns_b[8 * j + c] = <float>x_bspline[k, j]
+                        place[4 * c + j] = min(last_x, max(0, x_cell[b] - 1 + j)) - x_base[k // fine]
                 for r in range(ny):
                     k = at_y + r
                     py = k // fine - pixels[0]
                     if py < 0 or py >= weight.shape[0]:
                         continue
                     for i in range(4):
-                        down[i] = 5 * (min(last_y, max(0, y.cell[a] - 1 + i)) - y.base[k // fine])
+                        down[i] = 5 * (min(last_y, max(0, y_cell[a] - 1 + i)) - y.base[k // fine])
                     _change(
                         scratch, r, shaded[r], faded[r], columns_c, columns_b, &y.cubic[k, 0], &y.bspline[k, 0], change
                     )

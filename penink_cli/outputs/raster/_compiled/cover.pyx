@@ -56,6 +56,10 @@ cdef inline void _span(unsigned short* row, double left, double right, long long
 
 cdef void _capsule(const Points* band, double ax, double ay, double bx, double by, double r) noexcept nogil:
     """Ink all within r of the line from a to b."""
+    cdef unsigned short* bits = band.bits
+    cdef Py_ssize_t width = band.width
+    cdef double top = band.top
+    cdef long long rows = band.rows
     cdef double y, half, left, right, x
     cdef long long end
     cdef double dx = bx - ax
@@ -64,15 +68,15 @@ cdef void _capsule(const Points* band, double ax, double ay, double bx, double b
     cdef double nx = 0.0, ny = 0.0, slope = 0.0, inner_low = 1.0, inner_high = 0.0
     cdef double low = min(ay, by)
     cdef double high = max(ay, by)
-    cdef double from_row = (low - r - band.top) * 16.0 - 0.5
-    cdef double to_row = (high + r - band.top) * 16.0 - 0.5
+    cdef double from_row = (low - r - top) * 16.0 - 0.5
+    cdef double to_row = (high + r - top) * 16.0 - 0.5
     cdef long long j = 0
-    cdef long long most = 16 * band.width - 1
-    if to_row < 0.0 or from_row > band.rows - 1 or max(ax, bx) + r < 0.0 or min(ax, bx) - r > band.width:
+    cdef long long most = 16 * width - 1
+    if to_row < 0.0 or from_row > rows - 1 or max(ax, bx) + r < 0.0 or min(ax, bx) - r > width:
         return
     if from_row > 0.0:
         j = <long long>from_row
-    end = band.rows - 1 if to_row >= band.rows - 1 else <long long>to_row
+    end = rows - 1 if to_row >= rows - 1 else <long long>to_row
     if length > 0.0:
         nx = -dy * r / length
         ny = dx * r / length
@@ -84,7 +88,7 @@ cdef void _capsule(const Points* band, double ax, double ay, double bx, double b
             inner_low = low + ny
             inner_high = high - ny
     while j <= end:
-        y = band.top + (j + 0.5) / 16.0
+        y = top + (j + 0.5) / 16.0
         if inner_low <= y <= inner_high:  # the row crosses both long sides
             left = ax + nx + (y - ay - ny) * slope
             right = ax - nx + (y - ay + ny) * slope
@@ -113,7 +117,7 @@ cdef void _capsule(const Points* band, double ax, double ay, double bx, double b
                     left = min(left, x)
                     right = max(right, x)
         if left <= right:
-            _span(band.bits + j * band.width, left, right, most)
+            _span(bits + j * width, left, right, most)
         j += 1
 
 
