@@ -77,11 +77,10 @@ def to_ps(
     if preview and (paper is not None or separations):
         raise click.UsageError(f"--preview is of an EPS; with {'--paper' if paper else '--separations'} it is a page")
     from dataclasses import replace
-    from functools import partial
 
     from penink_cli.outputs import postscript
     from penink_cli.outputs.page import lay_out
-    from penink_cli.travel.order import ordered
+    from penink_cli.travel.order import ordered_each
 
     layers = read_layers(files)
     if device_dpi is not None:
@@ -92,7 +91,7 @@ def to_ps(
     if separations and page.paper is None:
         page = replace(page, paper="plate")
     with writing(output, binary=False) as out:
-        postscript.write(out, layers, page, inks, compress, partial(ordered, improve=False), separations, preview)
+        postscript.write(out, layers, page, inks, compress, ordered_each, separations, preview)
 
 
 def _refuse_what_is_ignored(self_drawing: bool) -> None:

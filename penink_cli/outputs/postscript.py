@@ -20,8 +20,8 @@ with short ways between them makes short numbers.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -32,6 +32,8 @@ from penink_cli.ground.exact import length as length_of
 from penink_cli.ground.model import Floats, Ints, Strokes
 from penink_cli.outputs import preview, swelling, words
 from penink_cli.outputs.page import Page, ink_box
+
+Order = Callable[[Strokes, Ints], Strokes]
 
 UNITS = 20  # a point: an eighth of a 0.4 pt pen
 CHAIN = 200  # segments; Level 1 interpreters hold 1500 elements in a path
@@ -110,14 +112,14 @@ def write(
     page: Page,
     colours: Sequence[tuple[float, float, float]] = (),
     compress: bool = False,
-    order: Callable[[Strokes], Strokes] = lambda strokes: strokes,
+    order: Order = lambda strokes, first: strokes,
     separations: bool = False,
     with_preview: bool = False,
 ) -> None:
     """Write one EPS, or, where the page is a paper, one page for a printer.
 
     layers: the first at the bottom. colours: red, green, blue (0 … 1) of each layer; black if there is none.
-    order: brings strokes into an order with short ways between them.
+    order: brings each run first[g] … first[g + 1] - 1 of strokes into an order with short ways between them.
     separations: a plate a page: each layer by itself, and in black. The page is a paper.
     with_preview: an EPS has a preview, for programs that run no PostScript.
     """
@@ -139,7 +141,7 @@ def write(
 
 def _write_page(
     out: Sink, layers: Sequence[tuple[int, Strokes]], page: Page, units: int,
-    colours: Sequence[tuple[float, float, float]], compress: bool, order: Callable[[Strokes], Strokes],
+    colours: Sequence[tuple[float, float, float]], compress: bool, order: Order,
 ) -> None:  # fmt: skip
     """The layers, each with its number, on a page of their own."""
     # The position starts at the sheet's top-left corner; y is turned up only here.
@@ -223,7 +225,7 @@ def _units(layers: Sequence[Strokes]) -> int:
 
 
 def _body(
-    strokes: Strokes, units: int, at: tuple[int, int], order: Callable[[Strokes], Strokes]
+    strokes: Strokes, units: int, at: tuple[int, int], order: Order
 ) -> tuple[list[bytes], tuple[int, int]]:
     """The arrays of one layer, beginning with the pen at ``at``, and where it is left."""
     parts: list[bytes] = []
@@ -232,49 +234,45 @@ def _body(
         numbers, first, at = _swelling(strokes.taken(swells), units, at, order)
         parts += [b"{", bytes(_ragged(numbers, first))]
         strokes = strokes.taken(~swells)
-    groups = [(kind, k, order(group)) for kind, k, group in _groups(_split(strokes), units)]
-    if groups:
-        text, at = _even(groups, units, at)
+    if len(strokes):
+        groups = _groups(_split(replace(strokes, knot_widths=None)), units)
+        text, at = _even(replace(groups, strokes=order(groups.strokes, groups.first)), units, at)
         parts += text
     return parts, at
 
 
-def _even(
-    groups: list[tuple[str, int, Strokes]], units: int, at: tuple[int, int]
-) -> tuple[list[bytes], tuple[int, int]]:
-    """Groups of strokes of one width each as arrays, each pen named where it changes; and where the last stroke ends.
+def _even(groups: Groups, units: int, at: tuple[int, int]) -> tuple[list[bytes], tuple[int, int]]:
+    """Groups of strokes as arrays, each pen named where it changes; and where the last stroke ends.
 
     A group may be of a single stroke and there may be a thousand, so all their numbers become text in one go.
     """
+    strokes, begins, sizes = groups.strokes, groups.first[:-1], np.diff(groups.first)
+    same = list(zip(groups.kinds, groups.segments))
     alike: dict[tuple[str, int], list[int]] = {}
-    for g, (kind, k, _) in enumerate(groups):
-        alike.setdefault((kind, k), []).append(g)
-    sizes = np.array([len(group) for _, _, group in groups])
-    begins = np.cumsum(sizes) - sizes  # of each group, its first stroke
-    place = np.cumsum([0, *np.repeat([2 + k * SEGMENT[kind] for kind, k, _ in groups], sizes)])
+    for g, key in enumerate(same):
+        alike.setdefault(key, []).append(g)
+    place = np.cumsum([0, *np.repeat([2 + k * SEGMENT[kind] for kind, k in same], sizes)])
     numbers, after = np.empty(place[-1], np.int64), np.empty(place[-1], np.int32)
     ends = np.empty((len(place) - 1, 4), np.int64)
     calls: list[bytes] = []
     for (kind, k), which in alike.items():
         count = sizes[which]
         rank = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count)
-        strokes = np.repeat(begins[which], count) + rank
-        points = np.concatenate([groups[g][2].points for g in which]).reshape(len(strokes), 3 * k + 1, 2)
-        rows, ends[strokes] = _rows(kind, k, points, units)
-        at_rows = place[strokes][:, None] + np.arange(rows.shape[1])
+        own = np.repeat(begins[which], count) + rank
+        rows, ends[own] = _rows(kind, k, strokes.points[strokes.first[own][:, None] + np.arange(3 * k + 1)], units)
+        at_rows = place[own][:, None] + np.arange(rows.shape[1])
         numbers[at_rows] = rows
         after[at_rows] = _breaks(rank, rows.shape[1], SEGMENT[kind], 2 + len(calls))
         calls.append(b"}d\n{" if kind == "d" else b"}%d %s\n{" % (k, kind.encode()))
     ways = ends[:, :2] - np.vstack([at, ends[:-1, 2:]])
     numbers[place[:-1]], numbers[place[:-1] + 1] = ways[:, 0], ways[:, 1]
-    pens = [b"%s w\n{" % _number(group.widths[0] * units) for _, _, group in groups]
+    widths = strokes.widths[begins].tolist()
+    pens = [b"%s w\n{" % _number(width * units) for width in widths]
     names = {key: call.removesuffix(b"{") for key, call in zip(alike, calls)}
-    closing = []
-    for g, (kind, k, group) in enumerate(groups):
-        closing.append(names[kind, k])
-        if g + 1 < len(groups):
-            closing[g] += b"{" if groups[g + 1][2].widths[0] == group.widths[0] else pens[g + 1]
-    after[place[begins + sizes] - 1] = 2 + len(calls) + np.arange(len(groups))
+    closing = [names[key] for key in same]
+    for g in range(len(same) - 1):
+        closing[g] += b"{" if widths[g + 1] == widths[g] else pens[g + 1]
+    after[place[groups.first[1:]] - 1] = 2 + len(calls) + np.arange(len(same))
     text = words.text(numbers, after, [b" ", b"\n", *calls, *closing])
     return [pens[0], bytes(text)], (int(ends[-1, 2]), int(ends[-1, 3]))
 
@@ -294,14 +292,15 @@ def _breaks(rank: Ints, length: int, step: int, full: int) -> npt.NDArray[np.int
 
 
 def _swelling(
-    strokes: Strokes, units: int, at: tuple[int, int], order: Callable[[Strokes], Strokes]
+    strokes: Strokes, units: int, at: tuple[int, int], order: Order
 ) -> tuple[Ints, Ints, tuple[int, int]]:
     """The numbers of strokes that swell, where each stroke's begin, and where the last one ends."""
 
     def plain(points: Floats) -> npt.NDArray[np.bool_]:
         return (_bends(points * units)[1] < 3) | (length_of(points[:, 3] - points[:, 0]) * units < 8)
 
-    strokes = order(swelling.pieces(strokes, plain, CHAIN))
+    strokes = swelling.pieces(strokes, plain, CHAIN)
+    strokes = order(strokes, np.array([0, len(strokes)]))
     segments = np.diff(strokes.first) // 3
     knots = words.whole(strokes.points[_knot_places(strokes)] * (units, -units))
     widths = words.whole(strokes.at_knots * (8 * units))
@@ -345,8 +344,21 @@ def _ragged(numbers: Ints, first: Ints) -> memoryview:
     return words.text(numbers, after, [b" ", b"\n", b"}t\n{", b"}t\n"])
 
 
-def _groups(strokes: Strokes, units: int) -> Iterator[tuple[str, int, Strokes]]:
-    """Strokes of one pen, kind and number of segments k together."""
+@dataclass(frozen=True, eq=False)
+class Groups:
+    """Strokes of one pen, kind and number of segments together, there being g groups of them.
+
+    first: (g + 1,) where each group begins among the strokes. kinds, segments: of each group.
+    """
+
+    strokes: Strokes
+    first: Ints
+    kinds: list[str]
+    segments: list[int]
+
+
+def _groups(strokes: Strokes, units: int) -> Groups:
+    """The strokes, at least one, in their groups."""
     counts = np.diff(strokes.first)
     segments = (counts - 1) // 3
     inner = np.arange(len(strokes.points)) - np.repeat(strokes.first[:-1], counts)
@@ -358,13 +370,9 @@ def _groups(strokes: Strokes, units: int) -> Iterator[tuple[str, int, Strokes]]:
     _, pen = np.unique(strokes.widths, return_inverse=True)
     key = (pen * len(SEGMENT) + kind) * (int(segments.max(initial=0)) + 1) + segments
     by_key = np.argsort(key, kind="stable")
-    for chosen in np.split(by_key, np.flatnonzero(np.diff(key[by_key])) + 1):
-        if len(chosen):
-            i = chosen[0]
-            points = strokes.points[strokes.first[chosen][:, None] + np.arange(counts[i])].reshape(-1, 2)
-            first = np.arange(len(chosen) + 1) * counts[i]
-            group = Strokes(strokes.width, strokes.height, points, first, strokes.widths[chosen])
-            yield list(SEGMENT)[kind[i]], int(segments[i]), group
+    begin = np.flatnonzero(np.diff(key[by_key], prepend=-1))
+    names = [list(SEGMENT)[i] for i in kind[by_key[begin]].tolist()]
+    return Groups(strokes.taken(by_key), np.append(begin, len(strokes)), names, segments[by_key[begin]].tolist())
 
 
 def _rows(kind: str, k: int, points: Floats, units: int) -> tuple[Ints, Ints]:

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from penink_cli.travel.order import drawn_length, joined, ordered, travel_length
+from penink_cli.travel.order import drawn_length, joined, ordered, ordered_each, travel_length
 from tests.outputs.drawings import crosshatch, every_kind, strokes_of
 
 place = st.tuples(st.integers(0, 30).map(float), st.integers(0, 30).map(float))
@@ -52,6 +52,19 @@ def test_progress_is_told_to_twice_the_number_of_strokes():
         told = []
         ordered(strokes, improve, told.append)
         assert sum(told) == 2 * len(strokes) and min(told) >= 0 and len(told) > 5
+
+
+@settings(deadline=None)
+@given(st.lists(chains, max_size=12))
+def test_runs_are_ordered_each_as_by_itself(runs):
+    """Ties too: places are few, and dots and strokes lie on one another."""
+    parts = [strokes_of(part, np.arange(1, len(part) + 1)) for part in runs if part]
+    if not parts:
+        return
+    whole = type(parts[0]).joined(parts)
+    found = ordered_each(whole, np.cumsum([0, *map(len, parts)]))
+    wanted = type(whole).joined([ordered(part, improve=False) for part in parts])
+    assert found.points.tolist() == wanted.points.tolist() and found.widths.tolist() == wanted.widths.tolist()
 
 
 @settings(deadline=None)

@@ -142,6 +142,40 @@ def greedy(
             pen[1] = points[end, 1]
 
 
+def greedy_few(
+    const double[:, ::1] points, const int[::1] order, const long long[::1] first, const long long[::1] begins,
+    int[::1] tour, unsigned char[::1] flips, unsigned char[::1] used,
+) -> None:
+    """As `greedy`, for many groups of few strokes: each from the corner (0, 0), and with no tree.
+
+    points (2n, 2): of all groups. order: ends, group after group; group g has order[first[g]] … order[first[g + 1] - 1]
+    and fills tour from begins[g] on, to begins[g + 1].
+    """
+    cdef Py_ssize_t g, i, k
+    cdef double x, y, dx, dy, d, nearest
+    cdef int found
+    with nogil:
+        for g in range(begins.shape[0] - 1):
+            x = y = 0.0
+            for i in range(begins[g], begins[g + 1]):
+                nearest = 1e300
+                found = -1
+                for k in range(first[g], first[g + 1]):
+                    if used[order[k] // 2]:
+                        continue
+                    dx = points[order[k], 0] - x
+                    dy = points[order[k], 1] - y
+                    d = dx * dx + dy * dy
+                    if found < 0 or d < nearest:
+                        nearest = d
+                        found = order[k]
+                tour[i] = found // 2
+                flips[found // 2] = found & 1
+                used[found // 2] = 1
+                x = points[found ^ 1, 0]
+                y = points[found ^ 1, 1]
+
+
 def neighbours(
     const double[:, ::1] sorted_points, const int[::1] order, double[:, ::1] boxes, int[::1] alive,
     unsigned char[::1] used, int[:, ::1] near,
