@@ -49,8 +49,8 @@ def canny(path):
 
 def child():
     """One call of `draw` in this process; prints what each filter took, start-up and the rest beside them, as JSON."""
+    from penink_cli.__main__ import main as penink  # as it is called, with what it sets before anything else
     from penink_cli.chain import filters
-    from penink_cli.main import penink
 
     spent = {"start": time.process_time()}
     run = filters.Chain.run
@@ -64,7 +64,12 @@ def child():
 
     filters.Chain.run = timed
     wall = time.perf_counter()
-    penink.main(["draw", "--quiet", *sys.argv[2:]], standalone_mode=False)
+    sys.argv = ["penink", "draw", "--quiet", *sys.argv[2:]]
+    try:
+        penink()
+    except SystemExit as end:
+        if end.code:
+            raise
     wall = time.perf_counter() - wall
     total = time.process_time()
     spent["rest"] = total - sum(spent.values())
