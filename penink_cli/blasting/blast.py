@@ -12,6 +12,7 @@ from penink_cli.blasting.sheet import Sheet, resample
 from penink_cli.blasting.task import Task
 from penink_cli.ground.errors import ParameterError
 from penink_cli.ground.model import Directions, EdgeList, Floats, Lines, Strokes, Texture
+from penink_cli.ground.recall import recalled
 
 #: How often a blast calls its `tick`, at the most.
 TICKS = 5
@@ -67,7 +68,11 @@ def blast(
     if lines is not None:
         from penink_cli.blasting import telling  # needs the rooms of lines and composition
 
-        tone, told = telling.told(tone, width_pt, height_pt, lines, outlines, threads or 1)
+        bare, shown = tone, lines
+        tone, told = recalled(
+            "telling", (bare, width_pt, height_pt, shown, outlines),
+            lambda: telling.told(bare, width_pt, height_pt, shown, outlines, threads or 1),
+        )  # fmt: skip
     task = Task(
         tone, width_pt, height_pt, edges, texture, seed, pen_pt, device_dpi, outlines, directions, told, swell,
         natural_pt, threads or 1, tick,

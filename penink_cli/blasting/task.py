@@ -14,6 +14,7 @@ from penink_cli.blasting.sheet import Cells, Sheet, coverage
 from penink_cli.ground.angles import direction
 from penink_cli.ground.device import MEAN
 from penink_cli.ground.model import Directions, EdgeList, Floats, Strokes, Texture
+from penink_cli.ground.recall import recalled
 
 #: The broadest pen that small dark things are filled with.
 MARK_PT = 0.5
@@ -69,9 +70,8 @@ class Begun:
         finest = task.pen_pt or min(
             [*texture.strokes.widths.tolist(), *(layer.pen_pt for layer in texture.layers), MARK_PT]
         )
-        self.small = marks.marks(
-            task.tone, task.width_pt, task.height_pt, finest, MEAN * gain, task.pen_pt is not None, self.sheet.ink
-        )
+        dark = task.tone, task.width_pt, task.height_pt, finest, MEAN * gain, task.pen_pt is not None, self.sheet.ink
+        self.small = recalled("marks", dark, lambda: marks.marks(*dark))
         hatching.draw_first(self.sheet, self.small)
         self.told = task.told
         if len(self.small):  # nor are they thin things to be drawn along
@@ -88,10 +88,11 @@ class Begun:
         dark = layers[-1] if layers and task.texture.engraving is None and layers[-1].spacing_pt == 0 else None
         light = None if self.light.none else self.light
         black = solids.BLACK if dark is not None and dark.high >= 1.0 else solids.DARKEST
-        return solids.solids(
+        told = (
             task.tone, task.width_pt, task.height_pt, task.pen_pt, MEAN * task.gain, self.sheet.ink, black, light,
             dark is not None and dark.high >= ALMOST,
         )  # fmt: skip
+        return recalled("solids", told, lambda: solids.solids(*told))
 
     def field(self) -> tuple[Cells, Cells] | None:
         """Cosine and sine of twice the angle of the task's field in each cell, (rows, columns); None without one."""
@@ -100,7 +101,8 @@ class Begun:
             return None
         from penink_cli.directions.reading import at_size  # the reconstruction is not needed otherwise
 
-        field = at_size(task.directions, task.edges, sheet.rows, sheet.columns, sheet.threads, confident=False)
+        told = task.directions, task.edges, sheet.rows, sheet.columns
+        field = recalled("field", told, lambda: at_size(*told, sheet.threads, confident=False))
         return np.asarray(field.cos2, np.float32), np.asarray(field.sin2, np.float32)
 
     def one_angle(self) -> tuple[Cells, Cells]:

@@ -181,6 +181,7 @@ draw.help = (draw.help or "").replace("ENDINGS", ", ".join(endings()))
 
 def _draw_again(request: Request, file: str | None, output: str | None, read: list[str]) -> None:
     """Draw, and draw again after each change of a file of the call, until a signal ends the process."""
+    from penink_cli.ground.recall import remembering
     from penink_cli.options.watching import watch
 
     request.page.extend(["--reload"] if request.ending == ".html" else [])
@@ -190,7 +191,7 @@ def _draw_again(request: Request, file: str | None, output: str | None, read: li
         streams.keep_inputs([output], [file, *read])  # a file saved anew may have an old drawing's inode
         draw_one(request.read_anew(), file, output, between, kept)
 
-    with bench() as between:
+    with bench() as between, remembering():
         watch(once)
 
 

@@ -12,4 +12,5 @@ angles      directions on the sheet; shapes: whether two grids may be of one pic
 colour      sRGB's curve and CIE Lab; codes: `#rrggbb`
 masks       parts of a mask that hang together, and distances
 threads     bands of work shared out
+recall      what is made of the same things twice, remembered while a drawing follows its files
 """

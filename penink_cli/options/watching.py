@@ -11,7 +11,7 @@ import click
 from penink_cli.ground.changes import State, noting, of_file
 from penink_cli.ground.errors import PeninkError, printable
 
-LOOK = 0.1  # seconds between two looks at the files
+LOOK = 0.03  # seconds between two looks at the files
 
 
 def look() -> None:
