@@ -1,7 +1,7 @@
 """What is made of the same things twice, made once: while a drawing follows its files.
 
-`chain.kept` remembers what whole filters have made. In one that runs again most does not depend on what has changed: of a
-drawing with another pen the field is read alike, and telling lines and solid black lie where they lay.
+`chain.kept` remembers what whole filters have made. In one that runs again most does not depend on what has changed:
+of a drawing with another pen the field is read alike, and telling lines and solid black lie where they lay.
 """
 
 from __future__ import annotations
