@@ -1,7 +1,8 @@
 """A photograph to the grey that a drawing of it is made from: the stages of composition in their order.
 
     colours -> rim left out -> grey by a mix -> black and white points -> base and detail
-            -> base exposed -> detail raised -> relief given ink -> ends -> faded out where a mask says
+            -> base exposed -> detail raised -> relief given ink -> ends -> deep shades black, smooth lights bare
+            -> faded out where a mask says
 
 Lengths are points on paper, at the size that the picture is composed for; grey 0 is ink and 1 is paper.
 """
@@ -29,6 +30,16 @@ _EYE_PT, _BROAD_PT, _AROUND_PT = 0.7, 4.0, 9.0  # activity: what lies between th
 _BACKGROUND, _BUSY, _MOST_BUSY = 0.25, 0.8, 1.5  # the weight of places without activity; its quantile that counts 1
 _PAGE, _PAGE_PAPER = 0.5, 0.985  # a picture more than half of which is so light is a page: its paper stays
 _INK, _PAPER = 0.05, 0.95  # what is darker is solid, what is lighter is bare
+# Amid what is nearly black, of σ DEEP_PT, tones go down by up to SINK: all of a dark cloth is black, not parts of it.
+# A Gaussian darker than ALL_DEEP has all of it, one lighter than NOT_DEEP nothing; so do places lighter than STAYS.
+_DEEP_PT, _SINK, _ALL_DEEP, _NOT_DEEP, _STAYS = 3.0, 0.07, 0.13, 0.21, 0.3
+# What was lighter than SHINES is a highlight and no relief, what was darker by NEARLY may be in full.
+_SHINES, _NEARLY = 0.90, 0.15
+# Broad lights from BLANK_FROM on go up until what is BLANK is bare paper: skin and skies are not combed with single
+# lines.
+_BLANK_FROM, _BLANK = 0.74, 0.90
+# So do lights of the whole, less steeply: what is steeper makes haloes.
+_LIGHT_FROM, _BARE = 0.68, 0.92
 _LIGHTS, _MIDDLE = 0.75, 0.2  # what was so light is not lifted relief, what was darker by the second is in full
 _TELLING = 1_500_000  # values, more or less, that tell the range of a photo
 _NARROW = 0.35  # of the range of grey: a photograph that uses no more is told of
@@ -177,13 +188,33 @@ def _composed(
     slopes = looked_up(broad, slope, 0.5 / exposure.STEPS, 1 - 0.5 / exposure.STEPS)
     lifted = np.float32(key) * carved * (exposed - broad)
     lifted *= np.clip((np.float32(_LIGHTS) - broad) * np.float32(1 / _MIDDLE), 0, 1)
-    result = relief.raised(detail, exposed, slopes, lifted, choice.detail, noise, pt, threads)
+    carved *= np.clip((np.float32(_SHINES) - broad) * np.float32(1 / _NEARLY), 0, 1)
+    exposed = _blank(exposed, carved, _BLANK_FROM, _BLANK, _PAPER)
+    carved *= np.float32(min(key, 1.0))
+    result = relief.raised(detail, exposed, slopes, lifted, carved, choice.detail, noise, pt, threads)
     result = np.clip((result - np.float32(_INK)) * np.float32(1 / (_PAPER - _INK)), 0, 1)
+    result = _blank(_sunk(result, pt, threads), carved, _LIGHT_FROM, _BARE)
     paper = int((grey > _PAGE_PAPER).sum()) / grey.size
     if paper > _PAGE:
         report(f"a page: {paper:.0%} of it is paper, and stays so")
         result = np.maximum(result, np.clip((grey - np.float32(0.9)) * np.float32(12.5), 0, 1))
     return result
+
+
+def _sunk(grey: Picture, pt: float, threads: int) -> Picture:
+    """Grey (h, w) whose deep shades are black; what is lighter in them stays."""
+    around = blurred(np.minimum(grey, np.float32(_STAYS)), _DEEP_PT * pt, threads)
+    deep = np.clip((np.float32(_NOT_DEEP) - around) * np.float32(1 / (_NOT_DEEP - _ALL_DEEP)), 0, 1)
+    deep *= np.clip((np.float32(_STAYS) - grey) * np.float32(1 / _STAYS), 0, 1) * np.float32(2)
+    result: Picture = np.maximum(grey - np.float32(_SINK) * np.minimum(deep, 1), 0)
+    return result
+
+
+def _blank(grey: Picture, carved: Picture, light: float, bare: float, paper: float = 1.0) -> Picture:
+    """Grey (h, w) whose lights from `light` on rise evenly to `paper` at `bare`, except as far as they are in relief."""
+    over = np.maximum(grey - np.float32(light), 0)
+    more = np.float32((paper - light) / (bare - light) - 1)
+    return grey + np.minimum(more * over, np.maximum(np.float32(paper) - grey, 0)) * (1 - carved)
 
 
 def points(grey: Picture, pt: float, fade: Picture | None, threads: int) -> tuple[float, float]:

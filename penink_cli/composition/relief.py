@@ -15,8 +15,10 @@ _FLAT = 0.045  # a local standard deviation of grey that is detail; what is well
 _GRID_PT = 0.75  # of the base
 # Relief: structure between these Gaussians' σ that is all around and not on one edge, as on coins, in fur, in leaves.
 # Where it has LEAST contrast and more, only greater steps belong to the base, up to a deviation of EDGES from FULL on.
-# A face has more of it than a coin: FULL is so high that lights on skin are hardly carved: it ages faces.
-_STRUCTURE_PT, _AROUND_PT, _MOST, _LEAST, _FULL, _EDGES = (1.0, 3.0), 8.0, 0.06, 0.010, 0.060, 0.085
+# A face has more of it than a coin, and relief ages faces. What is skewed to the dark within SKEW_AROUND_PT, as skin
+# with eyes and brows is (SKIN), is none; from METAL on all is. Where contrast is less than NONE, nothing is told.
+_STRUCTURE_PT, _AROUND_PT, _MOST, _LEAST, _FULL, _EDGES = (1.0, 3.0), 8.0, 0.06, 0.010, 0.030, 0.085
+_FINEST_PT, _SKEW_AROUND_PT, _BAND, _SKIN, _METAL, _NONE = 0.7, 10.0, 0.15, -0.25, 0.15, 0.003
 _FINE_PT, _FINE_SHARE = 0.5, 0.4  # what is finer a pen cannot show, and so much of it is kept
 _LIMIT = 0.4  # detail is not raised beyond that
 _USUAL, _OFFSET, _POWER, _LESS, _MORE = 0.055, 0.012, 0.4, 0.7, 1.5  # faint detail is raised more than strong
@@ -24,6 +26,8 @@ _GAIN = np.array([round(((_USUAL) / (k / 512 + _OFFSET)) ** _POWER, 9) for k in 
 # What the exposure has lifted there beyond so much is taken back by so much, for relief in light tones is lost on the
 # pen, and detail is raised by so much more where so much was lifted.
 _LIFT, _TAKEN_BACK, _CARVED, _LIFTED = 0.12, 0.6, 0.35, 0.25
+# In relief lights above DOWN_TO come down by so much of what they exceed it by, and detail is so much deeper.
+_DOWN, _DOWN_TO, _DEEPER = 0.4, 0.6, 0.5
 # Where so much of the detail is finer than BROAD, in parts of what is not, it is grain, as grass is, and raised less.
 _BROAD_PT, _GRAIN, _ALL_GRAIN, _GRAIN_LEFT = 1.2, 0.6, 0.95, 0.4
 _RELIEF, _RELIEF_RANGE, _RELIEF_INK, _LIGHT = 0.045, 0.05, 0.6, 0.60  # where detail is that strong, lights come down
@@ -60,17 +64,31 @@ def _in_relief(grey: Picture, pt: float, threads: int) -> Picture:
     root = blurred(np.sqrt(np.sqrt(np.minimum(there, np.float32(_MOST)))), _AROUND_PT * pt, threads)
     root *= root
     share: Picture = np.clip((root * root - np.float32(_LEAST)) / np.float32(_FULL - _LEAST), 0, 1)
-    return share
+    return share * np.clip((_skew(grey, pt, threads) - np.float32(_SKIN)) * np.float32(1 / (_METAL - _SKIN)), 0, 1)
+
+
+def _skew(grey: Picture, pt: float, threads: int) -> Picture:
+    """The skewness, around each place of grey (h, w), of what lies between two Gaussians; pt: pixels a point.
+
+    What shines has highlights and is skewed to the light (Motoyoshi et al., Image statistics and the perception of
+    surface qualities, Nature 447, 2007). A face is skewed to the dark: eyes, brows and lips.
+    """
+    band = blurred(grey, _FINEST_PT * pt, threads) - blurred(grey, _STRUCTURE_PT[1] * pt, threads)
+    band = np.clip(band, -_BAND, _BAND)
+    square = band * band
+    two, three = (blurred(v, _SKEW_AROUND_PT * pt, threads) for v in (square, square * band))
+    two = np.maximum(two, 0) + np.float32(_NONE * _NONE)
+    return three / (two * np.sqrt(two))
 
 
 def raised(
-    detail: Picture, lights: Picture, slope: Picture, lifted: Picture, gain: float, noise: float, pixels_per_pt: float,
-    threads: int,
+    detail: Picture, lights: Picture, slope: Picture, lifted: Picture, carved: Picture, gain: float, noise: float,
+    pixels_per_pt: float, threads: int,
 ) -> Picture:  # fmt: skip
     """The base `lights` (h, w) with the detail upon it.
 
     slope: that of the exposure's curve at each pixel, which has raised or flattened the base.
-    lifted: by how much relief is lighter for it, 0 elsewhere.
+    lifted: by how much relief is lighter for it, 0 elsewhere. carved: how much each place is in relief, 0 … 1.
     gain: of detail of usual strength. noise: its standard deviation, grey.
     """
     pt = pixels_per_pt
@@ -91,6 +109,8 @@ def raised(
     each *= np.float32(gain) * np.clip(slope, 0.8, 1.4)
     each *= 1 + np.float32(_CARVED / _LIFTED) * np.clip(lifted, 0, _LIFTED)
     lights = lights - np.float32(_TAKEN_BACK) * np.maximum(0, lifted - np.float32(_LIFT))
+    lights = lights - np.float32(_DOWN) * carved * np.maximum(0, lights - np.float32(_DOWN_TO))
+    each *= 1 + np.float32(_DEEPER) * carved
     broad = blurred(middle, _BROAD_PT * pt, threads)
     grain = spread(middle - broad, 6.0) / (spread(broad, 6.0) + np.float32(0.004))
     share = np.clip((grain - np.float32(_GRAIN)) * np.float32(1 / (_ALL_GRAIN - _GRAIN)), 0, 1)

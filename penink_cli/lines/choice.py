@@ -16,8 +16,9 @@ USUAL_RANK, LEAST_PART, MOST = 6.0, 0.7, 1.6
 #: The least rank drawn on a sheet the root of whose area is SIZE_PT. It falls with the root of the size, within RANKS:
 #: a larger print has room for fainter lines.
 SIZE_PT, LEAST_RANK, RANKS = 432.0, 0.8, (0.5, 1.6)
-#: The least length of a line, and the least breadth of a spot, points on paper.
-SHORTEST_PT, FINEST_SPOT_PT = 3.0, 0.25
+#: The least length of a line, and the least and greatest breadth of a spot, points on paper: broader things are drawn
+#: in their own shape by the hatching and its blacks.
+SHORTEST_PT, FINEST_SPOT_PT, BROADEST_SPOT_PT = 3.0, 0.25, 5.0
 
 
 def least_rank(width_pt: float, height_pt: float) -> float:
@@ -40,7 +41,7 @@ def chosen(lines: Lines, width_pt: float, height_pt: float, choice: LineChoice, 
     for i in order.tolist():
         points = lines[i] * scale
         if lines.breadth[i] > 0:
-            if lines.breadth[i] * float(scale[0]) >= FINEST_SPOT_PT:
+            if FINEST_SPOT_PT <= lines.breadth[i] * float(scale[0]) <= BROADEST_SPOT_PT:
                 out.append(i)
             continue
         steps = lengths(points)

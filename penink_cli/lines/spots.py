@@ -27,6 +27,7 @@ OPEN = 0.06  # the part of its surroundings that may be as dark
 #: Things thinner than THICK of a spot's radius may be attached to it, as lashes are to a pupil: to a spot of at least
 #: LEAST_ATTACHED pixels' radius, and along at most ATTACHED of its border.
 THICK, LEAST_ATTACHED, ATTACHED = 0.5, 3.0, 0.4
+PART = 2.5  # times its area, the most that hangs together with it: more of that and it is the end of another thing
 HOLLOW = 0.2  # the part of it that may be light, as an eye's catchlight is
 CRISP = 0.35  # the part of its contrast that its border, two pixels wide to each side, makes up
 MOST = 600  # candidates looked at, those of the highest contrast
@@ -127,6 +128,8 @@ def _spot(sharp: Picture, picture: Picture, taken: np.ndarray, i: int, j: int, r
         return None
     rows, columns = np.nonzero(mine)
     n = len(rows)
+    if np.count_nonzero(masks.part_at(filled, i - top, j - left)) > PART * n:
+        return None
     # whole numbers: exact sums in any order
     my, mx = int(rows.sum()), int(columns.sum())
     yy = int((rows * rows).sum()) / n - (my / n) ** 2 + 1 / 12

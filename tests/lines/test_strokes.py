@@ -96,14 +96,15 @@ def test_a_ring_is_closed_smooth_and_does_not_taper():
 
 def test_spots_are_as_broad_as_they_are():
     lines = listed(
-        ([[100, 100]], 2, {"breadth": 8}),
-        ([[200, 100], [210, 104]], 2, {"breadth": 5}),
+        ([[100, 100]], 2, {"breadth": 2.4}),
+        ([[200, 100], [210, 104]], 2, {"breadth": 1.5}),
         ([[5, 5]], 2, {"breadth": 0.3}),
     )
     strokes = line_strokes(lines, 800, 600, LineChoice())
     assert [len(strokes[i]) for i in range(len(strokes))] == [1, 4, 1]
-    assert strokes.widths.tolist() == pytest.approx([16, 10, 0.6])
+    assert strokes.widths.tolist() == pytest.approx([4.8, 3, 0.6])
     assert len(line_strokes(lines, 320, 240, LineChoice())) == 2  # the third is too fine by then
+    assert len(line_strokes(lines, 1600, 1200, LineChoice())) == 1  # and here only that is small enough to be a dot
 
 
 def test_ruled_lines_are_straight_and_go_beyond_their_corners():
