@@ -211,7 +211,7 @@ def _sunk(grey: Picture, pt: float, threads: int) -> Picture:
 
 
 def _blank(grey: Picture, carved: Picture, light: float, bare: float, paper: float = 1.0) -> Picture:
-    """Grey (h, w) whose lights from `light` on rise evenly to `paper` at `bare`, except as far as they are in relief."""
+    """Grey (h, w) whose lights from `light` on rise evenly to `paper` at `bare`, unless they are in relief."""
     over = np.maximum(grey - np.float32(light), 0)
     more = np.float32((paper - light) / (bare - light) - 1)
     return grey + np.minimum(more * over, np.maximum(np.float32(paper) - grey, 0)) * (1 - carved)
