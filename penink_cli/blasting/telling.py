@@ -26,13 +26,17 @@ LEAST_SHOWN = 0.3
 TOLD_PT = 1.6
 
 
-def with_room(lines: Lines, width_pt: float, height_pt: float, tone: Picture, threads: int) -> Ints:
+def with_room(
+    lines: Lines, width_pt: float, height_pt: float, tone: Picture, choice: LineChoice, threads: int
+) -> Ints:
     """Indices of the lines, dark and light, that a drawing of that size, and so a smaller one, has room for.
 
-    tone: (h, w) of the photo. Light lines of which less than LEAST_SHOWN shows on it are left away.
+    tone: (h, w) of the photo. choice: how dark lines are drawn. Light lines of which less than LEAST_SHOWN shows on it
+    are left away.
     """
     by = pens.part(width_pt)
-    dark = chosen(lines, width_pt / by, height_pt / by, LineChoice())
+    room = 1.0 if choice.even else by
+    dark = chosen(lines, width_pt / room, height_pt / room, choice)
     light = chosen(lines, width_pt / by, height_pt / by, WHITE, white=True)
     h, w = tone.shape
     around = blurred(tone, AROUND_PT * w / width_pt, threads)

@@ -53,7 +53,11 @@ def lines(job: Job, photo: list[str]) -> str | None:
     """The telling lines, where there are to be any."""
     if "lines" not in job.stages:
         return None
-    return job.run("detect-lines", [*job.words("lines", "detect-lines"), *job.seen_at, *photo], "lines.json")
+    told = [*job.words("lines", "detect-lines"), *job.seen_at]
+    for name in ("density", "per-inch2"):  # what there is room for is what will be drawn
+        if job.seen_at and name in job.stages["lines"]:
+            told += [f"--{name}", str(job.stages["lines"][name])]
+    return job.run("detect-lines", [*told, *photo], "lines.json")
 
 
 def directions(job: Job, photo: list[str], edges: str, lines: str | None) -> str | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -9,6 +10,7 @@ import click
 from penink_cli.ground.streams import writing
 from penink_cli.options.common import (
     LENGTH,
+    POSITIVE,
     Finite,
     filter_options,
     processors,
@@ -29,6 +31,18 @@ if TYPE_CHECKING:
 @click.option("--min-length", type=Finite(least=0), metavar="N", help="Shortest line, pixels.  [default: by the size]")
 @click.option("--seen-at", type=LENGTH, help="Only lines that a drawing of this width, or a smaller one, has room for.")
 @click.option(
+    "--density",
+    type=POSITIVE,
+    metavar="D",
+    help="Of what --seen-at has room for: points of line in a square point, as `penink lines` has it.  [default: 0.13]",
+)
+@click.option(
+    "--per-inch2",
+    type=POSITIVE,
+    metavar="L",
+    help="Of what --seen-at has room for: inches of line in a square inch.  [default: 6]",
+)
+@click.option(
     "--directions",
     "directions_file",
     type=click.Path(allow_dash=True),
@@ -44,6 +58,8 @@ def detect_lines(
     black: bool | None,
     min_length: float | None,
     seen_at: float | None,
+    density: float | None,
+    per_inch2: float | None,
     directions_file: str | None,
     threads: int | None,
     verbose: bool,
@@ -82,8 +98,11 @@ def detect_lines(
     )
     if seen_at is not None:
         from penink_cli.blasting import telling
+        from penink_cli.ground.model import LineChoice
 
-        room = telling.with_room(found, seen_at, seen_at * rows / columns, 1 - grey, threads or processors())
+        usual = LineChoice()
+        choice = replace(usual, density=density or usual.density, per_inch2=per_inch2 or usual.per_inch2)
+        room = telling.with_room(found, seen_at, seen_at * rows / columns, 1 - grey, choice, threads or processors())
         found = found.chosen(room)
     spots = int((found.breadth > 0).sum())
     reporter(verbose)(f"{len(found)} lines, {int(found.white.sum())} of them light, {spots} spots")

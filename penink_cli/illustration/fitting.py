@@ -102,7 +102,7 @@ def _coarser(
     if limit >= MOST:
         lines = field = None
     if lines is not None:
-        lines = lines.chosen(telling.with_room(lines, width_pt, height_pt, 1 - picture.grey, threads or 1))
+        lines = lines.chosen(telling.with_room(lines, width_pt, height_pt, 1 - picture.grey, layer.line, threads or 1))
         count = math.floor(len(lines) * min(1.0, USUAL / limit))
         lines = lines.chosen(np.argsort(-lines.rank, kind="stable")[:count])
     if field is not None:

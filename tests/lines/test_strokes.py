@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from penink_cli.blasting.telling import with_room
 from penink_cli.ground.model import LineChoice, Lines
 from penink_cli.lines.choice import chosen, least_rank
 from penink_cli.lines.strokes import line_strokes
@@ -138,3 +139,14 @@ def test_loose_lines_are_drawn_twice_each_near_where_it_belongs():
         off = drawn[i][:, 1] - y
         assert 0.2 < np.abs(off).max() < 1.25 * 1.5
     assert drawn.widths[1] < 0.8 * drawn.widths[0]
+
+
+@pytest.mark.parametrize("choice", [LineChoice(), LineChoice(density=0.3, per_inch2=14), LineChoice(even=True)])
+@pytest.mark.parametrize("width", [120, 400])
+def test_a_list_made_for_a_size_draws_there_what_the_whole_list_does(choice, width):
+    whole = listed(*((straight(y), 3.0 + 0.01 * y) for y in range(10, 290, 3)))
+    left = whole.chosen(with_room(whole, width, 0.75 * width, np.zeros((75, 100), np.float32), choice, 1))
+    assert len(left) < len(whole)
+    drawn, expected = (line_strokes(lines, width, 0.75 * width, choice) for lines in (left, whole))
+    assert len(drawn) == len(expected) > 3
+    assert np.array_equal(drawn.points, expected.points) and np.array_equal(drawn.widths, expected.widths)
