@@ -54,11 +54,13 @@ def engrave(
     seed: int,
     field: tuple[Cells, Cells] | None,
     tick: Callable[[], None] = lambda: None,
+    drawn: Mask | None = None,
 ) -> Strokes:
     """Strokes that swell and give the sheet its tone, together with the ink that is there already.
 
     field: cosine and sine of twice the angle of the lines in each cell of the sheet; without, and where the engraving
-    does not follow it, lines are straight, wavering or rings.
+    does not follow it, lines are straight, wavering or rings. drawn: (rows, columns) where small dark things are that
+    are drawn already: a line that swelled for one would taper off beside it.
     """
     spacing = engraving.spacing_pt
     if engraving.lines:
@@ -71,6 +73,8 @@ def engrave(
         second = replace(engraving, angle=engraving.angle + CROSS_ANGLE, centre=None)
         sets.append(tracks.laid(sheet, second, spacing, borders, seed + 1, across, rim=False))
     wanted = sheet.tone.astype(np.float64)
+    if drawn is not None:
+        wanted[drawn] = 0.0
     # an engraver's lines go on across steps of tone, and so does what the eye sees of them
     eye = LowPass(EYE_PT / CELL_PT / 2, halve(sheet.tone), 2.0, sheet.each)
     seen = eye(np.ones_like(halve(sheet.tone)))

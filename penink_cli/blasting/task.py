@@ -59,6 +59,7 @@ class Begun:
     """A sheet on which the strokes that are there already, small dark things and solid black have been drawn.
 
     small: the strokes of those. told: cells (rows, columns) that hatching keeps away from thin things in, or None.
+    near: cells (rows, columns) that are those of small dark things, or None.
     """
 
     def __init__(self, task: Task):
@@ -74,9 +75,10 @@ class Begun:
         self.small = recalled("marks", dark, lambda: marks.marks(*dark))
         hatching.draw_first(self.sheet, self.small)
         self.told = task.told
+        self.near: npt.NDArray[np.bool_] | None = None
         if len(self.small):  # nor are they thin things to be drawn along
-            near = coverage(self.small, self.sheet.rows, self.sheet.columns, 2.0) > NEAR_MARK
-            self.told = near if self.told is None else self.told | near
+            self.near = coverage(self.small, self.sheet.rows, self.sheet.columns, 2.0) > NEAR_MARK
+            self.told = self.near if self.told is None else self.told | self.near
         self.light = LightThings(task.tone, task.width_pt, task.height_pt)
         black = self._black()
         hatching.draw_first(self.sheet, black)

@@ -35,7 +35,7 @@ def inside_and_stray(drawn: Strokes, diameter: float) -> tuple[float, float]:
     return float(ink[r < diameter / 2].mean()), float(ink[r > diameter / 2 + 1].sum()) / FINE**2 / area
 
 
-@pytest.mark.parametrize("texture", ["crosshatch", "parallel", "stipple"])
+@pytest.mark.parametrize("texture", ["crosshatch", "parallel", "stipple", "engraving"])
 @pytest.mark.parametrize("diameter", [2, 3, 4, 6, 8, 12])
 def test_a_black_disc_is_black_and_throws_nothing_out(texture, diameter):
     drawn = blast(disc(diameter), SIDE, SIDE, None, find_texture(texture), device_dpi=None)
@@ -63,9 +63,12 @@ def test_a_white_disc_in_black_is_white_and_the_black_beside_it_black(texture, d
     assert light >= (0.75 if diameter > 2 else 0.6) and around >= 0.97
 
 
-@pytest.mark.parametrize("rule", ["strict", "engrave"])
+@pytest.mark.parametrize("rule", ["strict", "engrave", "threshold"])
 @pytest.mark.parametrize("diameter", [2, 3, 6])
-def test_a_white_disc_by_other_rules(rule, diameter):
+def test_discs_by_other_rules(rule, diameter):
+    drawn = blast(disc(diameter), SIDE, SIDE, None, find_texture("stipple"), device_dpi=None, rule=rule)
+    inside, stray = inside_and_stray(drawn, diameter)
+    assert inside >= (0.75 if diameter > 2 else 0.6) and stray <= 0.1
     drawn = blast(1 - disc(diameter), SIDE, SIDE, None, find_texture("stipple"), device_dpi=None, rule=rule)
     light, around = light_and_around(drawn, diameter)
     assert light >= (0.75 if diameter > 2 else 0.6) and around >= 0.97
