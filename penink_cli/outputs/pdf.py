@@ -35,6 +35,7 @@ OPTIONS = (
     Option("trim", "Say that the sheet is cut to the picture: a trim box.", False),
 )
 DECIMALS = 3  # of a point
+OUTLINE_DECIMALS = 2  # of outlines, in whole numbers of these
 MOST = 14400  # a side of a page in user-space units, beyond which viewers differ
 
 
@@ -156,19 +157,26 @@ def _paths(layer: Strokes, page: Page) -> list[bytes]:
 
 
 def _outlines(strokes: Strokes, page: Page) -> bytes:
-    """The operators that fill the outlines of strokes that swell."""
+    """The operators that fill the outlines of strokes that swell, each told from where it begins."""
     import numpy as np
 
     from penink_cli.outputs import swelling, words
 
     points, first = swelling.outlines(strokes)
-    numbers = words.whole((points * (1, -1) + np.array((page.x, page.height - page.y))) * 10**DECIMALS)
-    inner = np.arange(len(numbers)) - np.repeat(first[:-1], np.diff(first))
-    after = np.zeros((len(numbers), 2), np.int32)
+    exact = points * (1, -1) + np.array((page.x, page.height - page.y))
+    grid = words.whole(exact * 10**OUTLINE_DECIMALS)
+    counts = np.diff(first)
+    inner = np.arange(len(grid)) - np.repeat(first[:-1], counts)
+    grid = np.where((inner > 0)[:, None], grid - np.repeat(grid[first[:-1]], counts, axis=0), grid)
+    after = np.zeros((len(grid), 2), np.int32)
     after[inner == 0, 1] = 1
     after[(inner > 0) & (inner % 3 == 0), 1] = 2
     after[first[1:] - 1, 1] = 3
-    return bytes(words.text(numbers.ravel(), after.ravel(), [b" ", b" m\n", b" c\n", b" c f\n"], DECIMALS))
+    begin = b"q 1 0 0 1 "
+    table = [b" ", b" cm 0 0 m\n", b" c\n", b" c f Q\n" + begin]
+    body = bytes(words.text(grid.ravel(), after.ravel(), table))
+    unit = plain(10.0**-OUTLINE_DECIMALS, OUTLINE_DECIMALS).encode()
+    return b"q %s 0 0 %s 0 0 cm\n" % (unit, unit) + begin + body[: len(body) - len(begin)] + b"Q\n"
 
 
 def _pens(pens: np.ndarray) -> list[bytes]:

@@ -19,6 +19,7 @@ from penink_cli.outputs.page import Page
 
 MM = 25.4 / 72
 DECIMALS = 3  # micrometres
+OUTLINE_DECIMALS = 2  # of outlines, in whole numbers of these: an eighth of a dot of most printers
 BATCH = 20000
 
 
@@ -61,7 +62,8 @@ def write(
         for start in range(0, len(layer), batch):
             out.write(_paths(layer, start, min(start + batch, len(layer)), page, pen, merge))
         if wide is not None:
-            out.write(f'<g fill="{colour}" stroke="none">\n'.encode())
+            scale = plain(10.0**-OUTLINE_DECIMALS, OUTLINE_DECIMALS)
+            out.write(f'<g fill="{colour}" stroke="none" transform="scale({scale})">\n'.encode())
             for start in range(0, len(wide), BATCH):
                 out.write(_outlines(wide.taken(np.arange(start, min(start + BATCH, len(wide)))), page))
             out.write(b"</g>\n")
@@ -97,18 +99,18 @@ def _paths(layer: Strokes, start: int, stop: int, page: Page, usual: float, merg
 def _outlines(strokes: Strokes, page: Page) -> memoryview:
     """The outlines of strokes that swell, a path each: so filled, by either rule, they are the strokes."""
     points, first = swelling.outlines(strokes)
-    numbers = _relative(points, first, page)
+    numbers = _relative(points, first, page, OUTLINE_DECIMALS)
     begin = b'<path d="M'
     after = np.zeros((len(numbers), 2), np.int32)
     after[first[:-1], 1] = 1
     after[first[1:] - 1, 1] = 2
-    body = words.text(numbers.ravel(), after.ravel(), [b" ", b"c", b'z"/>\n' + begin], DECIMALS)
-    return memoryview(begin + bytes(body[: len(body) - len(begin)]))
+    body = words.text(numbers.ravel(), after.ravel(), [b" ", b"c", b'z"/>\n' + begin])
+    return memoryview((begin + bytes(body[: len(body) - len(begin)])).replace(b" -", b"-"))
 
 
-def _relative(points: Floats, first: Ints, page: Page) -> Ints:
-    """Points (p, 2) of chains in whole 10^-DECIMALS mm on the page: segments relative to where they begin."""
-    grid = words.whole((points + np.array((page.x, page.y))) * (MM * 10**DECIMALS))
+def _relative(points: Floats, first: Ints, page: Page, decimals: int = DECIMALS) -> Ints:
+    """Points (p, 2) of chains in whole 10^-decimals mm on the page: segments relative to where they begin."""
+    grid = words.whole((points + np.array((page.x, page.y))) * (MM * 10**decimals))
     inner = np.arange(len(grid)) - np.repeat(first[:-1], np.diff(first))
     origin = np.arange(len(grid)) - np.where(inner > 0, (inner - 1) % 3 + 1, 0)
     return np.where((inner > 0)[:, None], grid - grid[origin], grid)

@@ -1,4 +1,4 @@
-"""Small things drawn as themselves: ``python -m tests.benchmarks.discs [TEXTURE …]``, all textures unless told otherwise.
+"""Small things drawn as themselves: ``python -m tests.benchmarks.discs [TEXTURE …]``, all textures unless told.
 
 Discs of 2 to 12 points, black on white and white in black, by every rule that the texture can be drawn by, for a
 screen and for a printer of 600 dpi, as that prints them. A row each; a figure a diameter:
@@ -38,7 +38,7 @@ def row(texture, rule, dpi):
 
 
 def main():
-    print(f"{'texture':18} {'rule':9} {'dpi':4} {'black':>27} {'stray %':>22} {'white':>27} {'around':>27}")
+    print(f"{'texture':18} {'rule':9} {'dpi':4} {'black':>29} {'stray %':>23} {'white':>29} {'around':>29}")
     misses = 0
     for texture in sys.argv[1:] or shipped():
         for rule in RULES:
@@ -53,7 +53,8 @@ def main():
                 shown = (" ".join(f"{v:.2f}"[-4:] for v in figures) for figures in (black, white, around))
                 a, b, c = shown
                 s = " ".join(f"{100 * v:3.0f}" for v in stray)
-                print(f"{texture:18} {rule:9} {dpi or '-':4} {a:>29} {s:>23} {b:>29} {c:>29}{' *' * (wrong > 0)}", flush=True)
+                name = f"{texture:18} {rule:9} {'600' if dpi else '-':4}"
+                print(f"{name} {a:>29} {s:>23} {b:>29} {c:>29}{' *' * (wrong > 0)}", flush=True)
     print(f"{misses} figures miss what is wanted")
 
 

@@ -1,8 +1,9 @@
 """What drawings show of the sample photographs, style by style, how true their tone is, and one at many sizes.
 
-Run as ``python -m tests.benchmarks.drawing [detail] [tone] [sizes] [STYLE …]``: all parts and styles, or those named.
-`detail`: a row a style, means and each picture. Drawing and photograph are both seen in a band between 0.96 and
-3.84 points (differences of Gaussians) and correlated, so that a drawing may be lighter, darker or of more contrast:
+Run as ``python -m tests.benchmarks.drawing [detail] [tone] [sizes] [swelling] [STYLE …]``: all parts and styles, or
+those named. `detail`: a row a style, means and each picture. Drawing and photograph are both seen in a band between
+0.96 and 3.84 points (differences of Gaussians) and correlated, so that a drawing may be lighter, darker or of more
+contrast:
 
     detail   over the whole picture, where strong contrasts count most: 1 shows all of it, 0 none
     telling  divided by the photograph's own contrast around each place, so that every place counts alike
@@ -10,9 +11,11 @@ Run as ``python -m tests.benchmarks.drawing [detail] [tone] [sizes] [STYLE …]`
     black    and darker than 0.05
 """
 
+import io
 import subprocess
 import sys
 import tempfile
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -20,14 +23,18 @@ from PIL import Image
 from scipy.ndimage import gaussian_filter
 
 from penink_cli.blasting.blast import left_over
-from penink_cli.blasting.sheet import coverage
+from penink_cli.blasting.sheet import coverage, resample
+from penink_cli.blasting.solids import solids
 from penink_cli.blasting.telling import told
 from penink_cli.formats import lines, strokes
-from penink_cli.ground.device import widened
+from penink_cli.ground.device import MEAN, widened
 from penink_cli.ground.model import GreyImage
 from penink_cli.measuring.tone import figures, printed
 from penink_cli.measuring.tone import wanted as as_wanted
 from penink_cli.options.styles import shipped
+from penink_cli.outputs import pdf, postscript, svg
+from penink_cli.outputs.page import lay_out
+from penink_cli.travel.order import ordered
 from samples.photographs import NAMES
 
 INCHES, DPI = 6, 150
@@ -80,15 +87,15 @@ def table(folder, styles):
     print("wanted of house: " + ", ".join(f"{k} >= {v}" for k, v in WANTED.items()))
 
 
-def tone(folder):
+def tone(folder, names=NAMES):
     """RMS and bias of tone against the composed grey, as the eye sees both: the hatching alone, and all there is.
 
     The eye is a Gaussian of 1/16 inch, as `penink measure` has it; RMS again of an eye that does not see across strong
-    steps of tone, which forgives nothing beside an edge.
+    steps of tone, which forgives nothing beside an edge. Of the hatching alone what is filled solid is not asked for.
     """
     print("\n| picture | house, hatching alone: RMS, bias % (RMS on its side of edges) | house, all | true, all |")
     print("| --- | --- | --- | --- |")
-    for name in NAMES:
+    for name in names:
         photo, found, row = folder / f"{name}.png", folder / "l.json", []
         penink("detect-lines", photo, "-o", found)
         for style, options, strength in (
@@ -102,6 +109,11 @@ def tone(folder):
             if style == "house" and not options:
                 with open(found, "rb") as stream:
                     wanted, _ = told(wanted, drawn.width, drawn.height, lines.read(stream, "l.json"), None, 1)
+            if style == "house" and options:
+                nothing, gain = np.zeros((1, 1), np.float32), MEAN * 72 / PRINTER_DPI
+                black = solids(wanted, drawn.width, drawn.height, None, gain, nothing)
+                filled = coverage(black, round(4 * drawn.height), round(4 * drawn.width)).astype(float)
+                wanted = np.maximum(wanted, resample(filled, *wanted.shape))
             have = printed([widened(drawn, PRINTER_DPI)], 10**9, 1)
             grey = GreyImage.from_grey(1 - wanted, 65535)
             seen_by_all = figures(as_wanted(grey, have.shape[1], have.shape[0]), have)
@@ -126,7 +138,34 @@ def sizes(folder):
     print("\n" + "; ".join(row) + " (wanted: <= 14 KB, as much ink at each size)", flush=True)
 
 
-PARTS = {"detail": None, "tone": tone, "sizes": sizes}
+def swelling(folder):
+    """Bytes of a drawing whose strokes swell, by what it would take if they did not, and a knot of those that do."""
+    photo, style = folder / f"{NAMES[0]}.png", folder / "even.style.json"
+    style.write_bytes(subprocess.run(
+        [sys.executable, "-m", "penink_cli", "style", "show", "house"], check=True, capture_output=True
+    ).stdout.replace(b'"swell": 1', b'"swell": 0'))  # fmt: skip
+    row, knots = [], 0
+    for chosen in ("house", style):
+        penink("draw", photo, "--style", chosen, "--no-lines", "--width", f"{INCHES}in", "-o", folder / "d.jsonl")
+        with open(folder / "d.jsonl", "rb") as stream:
+            drawn = strokes.read(stream, "d.jsonl")
+        wide = drawn.taken(drawn.swells)
+        for part in (drawn, wide):
+            for module, options in ((postscript, {}), (postscript, {"compress": True}), (svg, {}), (pdf, {})):
+                out = io.BytesIO()
+                near = {"order": partial(ordered, improve=False)} if module is postscript else {}
+                module.write(out, [part], lay_out([part]), **options, **near)
+                row.append(len(out.getvalue()))
+        knots = len(wide.at_knots) or knots
+    whole, some, even = row[:4], row[4:8], row[8:12]
+    told = (
+        f"{name} {a / c:.2f} times, {b / knots:.1f} bytes a knot"
+        for name, a, b, c in zip(("PostScript", "compressed", "SVG", "PDF"), whole, some, even)
+    )
+    print("\nswelling: " + "; ".join(told) + " (wanted: 2, SVG and PDF too; PostScript 40 bytes a knot, 14 compressed)")
+
+
+PARTS = {"detail": None, "tone": tone, "sizes": sizes, "swelling": swelling}
 
 
 def main():

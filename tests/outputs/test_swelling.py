@@ -136,7 +136,7 @@ def test_an_svg_of_both_kinds_has_a_path_for_each_even_stroke():
     swells = int(both.swells.sum())
     assert len(re.findall(r"<path", text)) >= len(both)
     assert text.count('z"/>') >= swells > 0
-    assert text.count('<g fill="#000000" stroke="none">') == 1
+    assert text.count('<g fill="#000000" stroke="none" transform="scale(0.01)">') == 1
 
 
 @pytest.mark.parametrize("pen", [0.2, 0.5, 1.2])
