@@ -14,6 +14,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
+import numpy.typing as npt
 
 from penink_cli.blasting import curves, polylines, tracks, walls
 from penink_cli.blasting.low_pass import LowPass
@@ -54,7 +55,7 @@ def engrave(
     seed: int,
     field: tuple[Cells, Cells] | None,
     tick: Callable[[], None] = lambda: None,
-    drawn: Mask | None = None,
+    drawn: npt.NDArray[np.bool_] | None = None,
 ) -> Strokes:
     """Strokes that swell and give the sheet its tone, together with the ink that is there already.
 
