@@ -175,7 +175,7 @@ def _outlines(strokes: Strokes, page: Page) -> bytes:
     begin = b"q 1 0 0 1 "
     table = [b" ", b" cm 0 0 m\n", b" c\n", b" c f Q\n" + begin]
     body = bytes(words.text(grid.ravel(), after.ravel(), table))
-    unit = plain(10.0**-OUTLINE_DECIMALS, OUTLINE_DECIMALS).encode()
+    unit = plain(1 / 10**OUTLINE_DECIMALS, OUTLINE_DECIMALS).encode()
     return b"q %s 0 0 %s 0 0 cm\n" % (unit, unit) + begin + body[: len(body) - len(begin)] + b"Q\n"
 
 

@@ -62,7 +62,7 @@ def write(
         for start in range(0, len(layer), batch):
             out.write(_paths(layer, start, min(start + batch, len(layer)), page, pen, merge))
         if wide is not None:
-            scale = plain(10.0**-OUTLINE_DECIMALS, OUTLINE_DECIMALS)
+            scale = plain(1 / 10**OUTLINE_DECIMALS, OUTLINE_DECIMALS)
             out.write(f'<g fill="{colour}" stroke="none" transform="scale({scale})">\n'.encode())
             for start in range(0, len(wide), BATCH):
                 out.write(_outlines(wide.taken(np.arange(start, min(start + BATCH, len(wide)))), page))
