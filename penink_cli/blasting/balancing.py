@@ -55,13 +55,20 @@ class Plate:
 
     strokes: which are pressed. ink: its colour on white. tone: (h, w) how much of the paper it is to cover, of
     all plates one shape, what lies there included. there: other strokes of this ink, which stay as they
-    are, such as outlines.
+    are, such as outlines. left: (rows, columns) the tone less what it leaves white on purpose, as light lines, for
+    which nothing is to make up; None where that is nothing.
     """
 
     strokes: Strokes
     ink: Colour
     tone: Floats
     there: Strokes | None = None
+    left: Floats | None = None
+
+    @property
+    def wanted(self) -> Floats:
+        """What the print is to have of it."""
+        return self.tone if self.left is None else self.left
 
 
 def balanced(
@@ -207,7 +214,7 @@ class _Press:
         self.passed = np.maximum(linear(np.array([plate.ink for plate in plates])), separation.LEAST)
         self.handles = [_handles(plate.strokes, self.rows, self.columns) for plate in plates]
         # at their own size: what is finer than strokes still tells how far dark of one lies on dark of another
-        self.wanted = lab_of_light(self._light([plate.tone.astype(np.float32) for plate in plates]))
+        self.wanted = lab_of_light(self._light([plate.wanted.astype(np.float32) for plate in plates]))
         self.scale = _discernible(self.wanted)
 
     def covers(self, drawn: Sequence[Strokes]) -> list[Cells]:

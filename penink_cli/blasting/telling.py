@@ -53,7 +53,7 @@ def with_room(
 def told(
     tone: Floats, width_pt: float, height_pt: float, lines: Lines, ink: Strokes | None, threads: int
 ) -> tuple[Floats, npt.NDArray[np.bool_]]:
-    """The tone that is left to the hatching, and where dark lines tell what is there, for each cell of the sheet.
+    """The tone that is left to the hatching, and where lines tell what is there, for each cell of the sheet.
 
     tone: (h, w). ink: strokes on the sheet already, among them those that the dark lines of the list have become;
     without them no dark line is taken to be drawn. Returns (h, w), or the sheet's cells where those are finer, and
@@ -66,9 +66,10 @@ def told(
     light = line_strokes(lines, width_pt, height_pt, WHITE, white=True)
     shown = _shown(around) * coverage(light, rows, columns)
     left = tone * resample((1 - shown).astype(np.float64), *tone.shape)
-    near = np.zeros((rows, columns), np.bool_)
+    # what is dark between two light lines is no thin thing: their ground is
+    near = (coverage(light, rows, columns, 2 * TOLD_PT) > 0.5) & (around > DARK)
     if ink is not None and len(ink):
-        near = coverage(ink, rows, columns, 2 * TOLD_PT) > 0.5
+        near |= coverage(ink, rows, columns, 2 * TOLD_PT) > 0.5
     return left, near
 
 

@@ -10,15 +10,16 @@ from penink_cli.chain.words import said
 
 
 def balanced(
-    job: Job, plates: list[Plate], greys: list[str], over: list[str], hatched: Callable[[list[str], str], list[str]]
-) -> list[str]:
+    job: Job, plates: list[Plate], greys: list[str], over: list[str], white: list[str],
+    hatched: Callable[[list[str], str], list[str]],
+) -> list[str]:  # fmt: skip
     """The strokes of plates that are drawn twice, by corrected tones, and pressed.
 
     greys: what each is blasted from. over: strokes that are ink already. hatched: draws such greys, under names of
     that ending. Who asks for a tone curve wants other colours, and gets them uncorrected; one pen is pressed evenly.
     """
     told = [word for grey in greys for word in ("--tone", grey)]
-    told += [word for name in over for word in ("--ink", name)]
+    told += [*(word for name in over for word in ("--ink", name)), *white]
     gamma = job.stages["blast"].get("gamma")
     drawn = hatched(greys, "draft.jsonl" if gamma is None else "hatching.jsonl")
     if gamma is None:

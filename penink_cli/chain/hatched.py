@@ -32,7 +32,7 @@ def hatch(
     if job.inks is None:
         hatchings = hatched(greys, "hatching.jsonl")
     else:
-        hatchings = balanced(job, plates, greys, over, hatched)
+        hatchings = balanced(job, plates, greys, over, white, hatched)
     if not any(job.chain.lines(name) > 1 for name in (*hatchings, *over)):
         warn("a drawing without a stroke: the photo is paper white, or was made so")
     by = writer(job.ending)

@@ -10,7 +10,7 @@ import click
 from penink_cli.ground.errors import ParameterError
 from penink_cli.ground.streams import source_name, writing
 from penink_cli.options.common import Finite, output_options, processors, threads_option
-from penink_cli.options.inputs import only_one_standard_input, read_grey
+from penink_cli.options.inputs import only_one_standard_input, read_grey, read_lines
 from penink_cli.options.layers import files_argument, read_layers
 from penink_cli.options.plates import names_of, plates_option
 from penink_cli.options.sheet import check_area
@@ -48,6 +48,13 @@ SAME_PT = 0.5
     metavar="FILE",
     help="Strokes of the last file's ink that are on the paper too, such as outlines, and stay as they are.",
 )
+@click.option(
+    "--lines",
+    "lines_file",
+    type=click.Path(allow_dash=True),
+    metavar="FILE",
+    help="Telling lines, as blast was told of them: nothing makes up for the light ones, which are left out.",
+)
 @threads_option
 @output_options
 def balance(
@@ -61,6 +68,7 @@ def balance(
     tone_files: tuple[str, ...],
     gamma: float,
     ink_files: tuple[str, ...],
+    lines_file: str | None,
     threads: int | None,
 ) -> None:
     """Press the strokes of plates so that together they print the right colours.
@@ -83,13 +91,13 @@ def balance(
         raise click.UsageError(f"--plate {plate}: there are {len(files)} files")
     if len(tone_files) != len(files):
         raise click.UsageError(f"{len(files)} files of strokes need as many --tone, not {len(tone_files)}")
-    read = (*files, *tone_files, *ink_files)
+    read = (*files, *tone_files, *ink_files, *([lines_file] if lines_file else []))
     only_one_standard_input(*read)
     if correct and gamma != 1.0:
         raise click.UsageError("--correct does not go with --gamma: the tone is the one that is blasted")
     targets = [output] if pattern is None else [*names_of(pattern, len(files), output, read)]
     workers = threads or processors()
-    made = _balanced(files, tone_files, gamma, ink_files, max_pixels, workers, quiet, correct)
+    made = _balanced(files, tone_files, gamma, ink_files, lines_file, max_pixels, workers, quiet, correct)
     for one, target in zip(made if plate is None else [made[plate - 1]], targets, strict=True):
         with writing(target, binary=correct) as out:
             if isinstance(one, Strokes):
@@ -99,11 +107,12 @@ def balance(
 
 
 def _balanced(
-    files: Sequence[str], tone_files: Sequence[str], gamma: float, ink_files: Sequence[str], max_pixels: int,
-    workers: int, quiet: bool, correct: bool,
+    files: Sequence[str], tone_files: Sequence[str], gamma: float, ink_files: Sequence[str], lines_file: str | None,
+    max_pixels: int, workers: int, quiet: bool, correct: bool,
 ) -> list[Strokes] | list[Floats]:  # fmt: skip
     """The strokes of all files, balanced, or their tones corrected."""
     from penink_cli.blasting.balancing import ROUNDS, Plate, balanced, corrected
+    from penink_cli.blasting.telling import told
     from penink_cli.ground.codes import of_code
     from penink_cli.ground.model import Strokes
     from penink_cli.illustration.drawing import tone_curve
@@ -121,9 +130,13 @@ def _balanced(
         if grey.values.shape != greys[0].values.shape:
             raise ParameterError(f"{source_name(path)}: plates of one photo have one size; this has another")
     there = Strokes.joined(drawn[n:]) if drawn[n:] else None
+    lines = read_lines(lines_file, greys[0])
+    tones = [tone_curve(grey, gamma) for grey in greys]
+    sheet = drawn[0].width, drawn[0].height
+    left = [None if lines is None else told(tone, *sheet, lines, None, workers)[0] for tone in tones]
     plates = [
-        Plate(layer, of_code(layer.color or "#000000"), tone_curve(grey, gamma), there if i == n - 1 else None)
-        for i, (layer, grey) in enumerate(zip(drawn[:n], greys, strict=True))
+        Plate(layer, of_code(layer.color or "#000000"), tones[i], there if i == n - 1 else None, left[i])
+        for i, layer in enumerate(drawn[:n])
     ]
     if correct:
         return corrected(plates, drawn[0].device_dpi, workers)

@@ -87,6 +87,23 @@ def test_what_a_plate_lacks_all_make_up_for(plates):
     assert abs(more[1][:, 128:196].mean()) < 0.02
 
 
+def test_nothing_makes_up_for_what_is_left_white(plates):
+    """A white line through all plates: their tones are corrected for it unless it is said to be meant."""
+    line = np.ones((216, 216))
+    line[96:104] = 0.0
+    cut = []
+    for plate in plates:
+        y = np.add.reduceat(plate.strokes.points[:, 1], plate.strokes.first[:-1]) / np.diff(plate.strokes.first)
+        cut.append(replace(plate, strokes=plate.strokes.taken((y < 46) | (y > 54))))
+    beside = np.r_[80:92, 108:120]
+    change = [
+        np.mean([(tone - plate.tone)[beside].mean() for tone, plate in zip(corrected(given), given, strict=True)])
+        for given in (plates, cut, [replace(plate, left=plate.tone * line) for plate in cut])
+    ]
+    assert change[1] > change[0] + 0.02
+    assert change[2] < change[0] + 0.25 * (change[1] - change[0])
+
+
 def test_plates_drawn_anew_are_truer(plates):
     anew = drawn(corrected(plates))
     assert off([replace(p, strokes=q.strokes) for p, q in zip(plates, anew, strict=True)]) < 0.9 * off(plates)

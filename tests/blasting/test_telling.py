@@ -29,11 +29,25 @@ def test_light_lines_are_left_out_where_it_is_dark_and_only_there():
     for tone, shown in ((0.75, True), (0.2, False)):
         asked = np.full((288, 288), tone)
         left, near = told(asked, SIDE, SIDE, lines(white=True), None, 1)
-        assert not near.any()
+        assert near.any() == shown and not near[: 130 * near.shape[0] // 288].any()
         assert (left[143:145, 100:200].mean() < 0.5 * tone) == shown
         assert np.allclose(left[:130], tone, atol=1e-6)
         drawn = rows(blast(asked, SIDE, SIDE, None, find_texture("crosshatch"), lines=lines(white=True)))
         assert (drawn[71:73].min() < 0.5 * drawn[40:60].mean()) == shown
+
+
+def test_what_lies_between_light_lines_is_no_thin_dark_thing():
+    """It stands out from them alone; a stroke along it would be a bar beside a whisker."""
+    asked = np.full((288, 288), 0.58)
+    both = [lines(white=True).points + np.array((0.0, shift)) for shift in (-1.8, 1.8)]
+    two = Lines(
+        100, 100, np.concatenate(both), np.array([0, 21, 42]), np.ones(42),
+        np.array([9.0, 8.0]), np.array([True, True]), np.zeros(2),
+    )  # fmt: skip
+    left, near = told(asked, SIDE, SIDE, two, None, 1)
+    middle = near.shape[0] // 2
+    assert left[143:145, 100:200].mean() > 0.5 and left[136:139, 100:200].min() < 0.3
+    assert near[middle - 1 : middle + 1, 40:100].all()
 
 
 def test_dark_lines_are_ink_that_counts_and_take_nothing_else_away():
