@@ -197,10 +197,11 @@ def _traced(
 def _lines(traces: Traces, shortest: float) -> list[_Line]:
     """The lines of at least `shortest` pixels, with their ranks.
 
-    rank = n^¾ · contrast · alone · min(alone / ALONE, 1.1) / (1 + bend²) · max(|cos Δ|, 2 clear², 2 light), where
+    rank = n^¾ · contrast · alone · min(own, 1) · min(own, 1.1) / (1 + bend²) · max(|cos Δ|, 2 clear², 2 light), where
 
     - n is the length in points of a picture of usual size, at most 60, and contrast the response in parts of FULL;
     - alone is the response in parts of itself and three times the surroundings': 1 on even ground, little in texture;
+      own is that in parts of ALONE: what wanders through grass is below;
     - bend is the turning, radians a point, in parts of a quarter;
     - Δ is the angle to the field of directions: what runs along the form tells it;
     - clear (contrast · alone, 1 from .55 on) and light (1 where the ground is lighter than a tone of .2, 0 from .3 on)
@@ -212,7 +213,9 @@ def _lines(traces: Traces, shortest: float) -> list[_Line]:
     contrast = np.minimum(traces.response / FULL, 1.0)
     bend = traces.turning / np.maximum(length, 1e-6) / 0.25
     alone = traces.response / (traces.response + 3 * traces.around + 1e-9)
-    salience = np.sqrt(n * np.sqrt(n)) * contrast / (1 + bend * bend) * alone * np.minimum(alone / ALONE, 1.1)
+    own = alone / ALONE
+    salience = np.sqrt(n * np.sqrt(n)) * contrast / (1 + bend * bend) * alone
+    salience = salience * np.minimum(own, 1.0) * np.minimum(own, 1.1)
     along = np.sqrt(np.maximum(0.5 + 0.5 * traces.agreement, 0))
     clear = np.minimum(contrast * alone / 0.55, 1.0)
     light = np.clip((0.3 - traces.ground) / 0.1, 0, 1)
