@@ -18,6 +18,7 @@ from hypothesis import HealthCheck, settings
 
 # No test is a stop-watch: a busy machine is no failure.
 settings.register_profile("penink", deadline=None, suppress_health_check=[HealthCheck.too_slow])
+settings.register_profile("quick", settings.get_profile("penink"), max_examples=20)
 settings.load_profile("penink")
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -73,7 +74,7 @@ RENDERED = (
     "tests/outputs/test_raster.py", "tests/outputs/test_swelling.py", "tests/outputs/test_device.py",
     "tests/test_make.py::test_nothing_in_a_name_is_run", "tests/outputs/test_inks.py",
     "tests/blasting/test_engraving.py", "tests/blasting/test_form.py", "tests/blasting/test_rules.py",
-    "tests/blasting/test_stroke_set.py", "tests/blasting/test_pressure.py",
+    "tests/blasting/test_stroke_set.py", "tests/blasting/test_pressure.py", "tests/blasting/test_restoring.py",
     "tests/illustration/test_layering.py::test_what_is_left_over_",
 )  # fmt: skip
 SLOW = (
@@ -85,6 +86,7 @@ SLOW = (
     "tests/composition/test_separation.py::test_draw_in_inks_",
     "tests/composition/test_separation.py::test_plates_by_name_",
     "tests/illustration/test_fitting.py", "tests/illustration/test_drawing_again.py", "tests/test_real.py",
+    "tests/illustration/test_archive.py::test_archives_of_one_file_", "tests/outputs/test_travel.py::test_clusters_",
     "tests/illustration/test_archive.py::test_plates_share_", "tests/illustration/test_archive.py::test_pack_twice_",
     "tests/illustration/test_lines.py::test_loose_and_packed_", "tests/lines/test_detection.py::test_the_list_is_of_",
     "tests/outputs/test_plotter.py::test_a_drawing_for_a_paper_", "tests/measuring/test_measure.py",
@@ -93,6 +95,12 @@ SLOW = (
     "tests/composition/test_separation.py::test_plates_and_lines_whose_sheets_",
     "tests/reconstruction/test_thinning.py", "tests/arrangement/test_strengths.py::test_strengths_are_the_steps_",
 )  # fmt: skip
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Fewer examples of each property in the quick tier."""
+    if "not rendered" in config.option.markexpr:
+        settings.load_profile("quick")
 
 
 def pytest_itemcollected(item: pytest.Item) -> None:

@@ -1,6 +1,6 @@
 """Edges and samples measured: ``python -m tests.benchmarks.edges`` (about ten minutes; ``--quick`` half a minute).
 
-Or only some parts: ``python -m tests.benchmarks.edges positions strengths trips heldout hostile storage large``.
+Or only some parts: ``python -m tests.benchmarks.edges positions strengths reaches trips heldout …``.
 
 Positions of edges on rendered scenes; round trips photo → edges and samples reduced 4 × → photo; the
 grids that --auto chooses and what they take to store; a 12-megapixel photograph; hostile inputs.
@@ -22,6 +22,7 @@ from scipy.ndimage import gaussian_filter, map_coordinates
 from scipy.spatial import cKDTree
 
 from penink_cli.arrangement import detection
+from penink_cli.arrangement import strengths as steps
 from penink_cli.arrangement.detection import detect_edges
 from penink_cli.formats import archive, edge_list, illustration, pgm, strokes
 from penink_cli.geometry import validity
@@ -33,7 +34,7 @@ from penink_cli.reconstruction.enlarge import enlarge, reconstruct
 from penink_cli.reconstruction.extraction import contaminated, extract_samples
 from penink_cli.reconstruction.grid import choose_grid
 from penink_cli.reconstruction.reduction import reduce
-from tests.benchmarks._scenes import random_scene, true_steps
+from tests.benchmarks._scenes import Scene, random_scene, true_steps
 from tests.benchmarks.archives import held
 
 PHOTOS = {"camera": 4.0, "coins": 4.0, "astronaut": 3.5, "coffee": 3.0, "chelsea": 2.5, "rocket": 2.0}
@@ -342,16 +343,19 @@ def hostile(count: int) -> None:
 
 
 def strengths(scenes: int) -> None:
-    """How far strengths are from the scene's own step, on rendered scenes; and where clean samples would tell them.
+    """How far strengths are from the scene's own step, on rendered scenes; and what no measure could tell better.
 
-    The truth is the step of the noiseless scene at the middle of each edge, where a true curve is within a pixel; near
-    junctions the nearest curve is not always the one that the edge belongs to, so 1 % stay. "samples" is the
-    difference of clean samples 1½ pixels to either side of the middle.
+    The truth is the step of the noiseless scene at the outline nearest to the middle of each edge, within a pixel.
+    "samples" is the difference of clean samples 1½ pixels to either side of the middle. "spread" is the truth's own: on
+    how many edges the scene's greys ½, 1 or 1½ pixels to both sides of the middle differ by more than .02 from what the
+    nearest outline has. That is so near junctions, where one edge is nearest to another's outline. "unblamed" are those
+    as told that are off where the truth has no such spread. "noise" is on how many a photo of the same scene with other
+    noise gives the same edge a strength that differs by more than .02; "noiseless", how many are off without noise.
     """
     print("strengths: part of the edges off by more than .02, the median and 95 % of how far off")
-    print("blur noise  edges       as told                samples")
+    print("blur noise  edges       as told                samples           spread unblamed  noise noiseless")
     for blur, noise in ((0.5, 0), (0.6, 1), (1.0, 2), (1.5, 4)):
-        told, sampled = [], []
+        told, sampled, steady, again, clean = [], [], [], [], []
         for seed in range(scenes):
             scene = random_scene(seed)
             photo = scene.photo(blur, noise, seed).astype(np.float32)
@@ -360,11 +364,58 @@ def strengths(scenes: int) -> None:
             near, truth = true_steps(scene, edges)
             told.append(np.abs(edges.strength - truth)[near])
             sampled.append(np.abs(sampled_steps(photo, edges) - truth)[near])
+            direct = np.stack([direct_steps(scene, edges, off) for off in (0.5, 1.0, 1.5)])
+            steady.append((np.abs(direct - truth).max(axis=0) <= 0.02)[near])
+            other = measured(scene.photo(blur, noise, seed + 1000).astype(np.float32), edges, blur)
+            again.append(np.abs(other - measured(photo, edges, blur))[near])
+            clean.append(np.abs(measured(scene.photo(blur, 0).astype(np.float32), edges, blur) - truth)[near])
         columns = "".join(
             f"   {np.mean(far > 0.02):6.1%}{np.median(far):7.4f}{np.percentile(far, 95):7.4f}"
             for far in (np.concatenate(told), np.concatenate(sampled))
         )
+        sure = np.concatenate(steady)
+        off, moved, left = (np.concatenate(far) > 0.02 for far in (told, again, clean))
+        columns += f"   {1 - sure.mean():6.1%}{np.mean(off & sure):9.1%}{moved.mean():7.1%}{left.mean():10.1%}"
         print(f"{blur:4.1f}{noise:6}{sum(map(len, told)):7}{columns}", flush=True)
+
+
+def reaches() -> None:
+    """How far from an edge its strength may be read: on photographs at half size, noise added that was not there.
+
+    On scenes of planes a longer reach would average more noise out. On photographs it reads other things.
+    """
+    print("reaches: part of the edges whose strength noise and reach move by more than .02, and by how much, RMS")
+    print("photograph   noise  " + "".join(f"{reach:>16.1f} px" for reach in (4.5, 6.0, 8.0)))
+    for name in ("camera", "coins", "astronaut", "coffee", "chelsea"):
+        pixels = Image.fromarray((photograph(name) * 255).astype(np.uint8)).reduce(2)
+        photo = np.asarray(pixels, np.float32)[:256, :256] / 255
+        for levels in (2, 4):
+            noise = np.random.default_rng(1).normal(0, levels / 255, photo.shape)
+            noisy = np.clip(photo + noise, 0, 1).astype(np.float32)
+            edges = detect_edges(noisy)
+            own = measured(photo, edges, 0.8)
+            line = ""
+            for reach in (4.5, 6.0, 8.0):
+                moved = np.abs(measured(noisy, edges, 0.8, reach) - own)[own >= 0]
+                line += f"{np.mean(moved > 0.02):11.1%}{np.sqrt(np.mean(moved * moved)):8.4f}"
+            print(f"{name:12}{levels:6}  {line}", flush=True)
+
+
+def direct_steps(scene: Scene, edges: EdgeList, off: float) -> np.ndarray:
+    """The difference (m,) of a scene's greys so far (pixels) to either side of the middle of each edge."""
+    a, b = edges.vertices[edges.edges[:, 0]], edges.vertices[edges.edges[:, 1]]
+    along = (b - a) / np.maximum(np.hypot(*(b - a).T), 1e-9)[:, None]
+    aside = off * np.column_stack([-along[:, 1], along[:, 0]])
+    return np.abs(scene.truth(*((a + b) / 2 + aside).T) - scene.truth(*((a + b) / 2 - aside).T))
+
+
+def measured(photo: np.ndarray, edges: EdgeList, lens: float, reach: float = steps._BEYOND) -> np.ndarray:
+    """Strengths (m,) of given edges, from pixels at most `reach` beyond where a step is blurred."""
+    before, steps._BEYOND = steps._BEYOND, reach
+    try:
+        return steps.strengths(photo, edges, lens)
+    finally:
+        steps._BEYOND = before
 
 
 def sampled_steps(photo: np.ndarray, edges: EdgeList) -> np.ndarray:
@@ -381,6 +432,7 @@ def sampled_steps(photo: np.ndarray, edges: EdgeList) -> np.ndarray:
 PARTS = {
     "positions": positions,
     "strengths": strengths,
+    "reaches": reaches,
     "trips": round_trips,
     "heldout": held_out,
     "hostile": hostile,

@@ -112,18 +112,19 @@ cdef class Front:
 
     cdef double due(self, Py_ssize_t j) noexcept nogil:
         """The row at which column j reaches its count of lines, 1e30 if it never does."""
-        cdef double[:, ::1] phase = self.phase
+        cdef double* phase = &self.phase[j, 0]
         cdef double count = self.count[j]
         cdef Py_ssize_t k = self.at[j]
-        cdef Py_ssize_t n = phase.shape[1]
-        while k > 0 and phase[j, k] > count:
+        cdef Py_ssize_t n = self.phase.shape[1]
+        while k > 0 and phase[k] > count:
             k -= 1
-        while k < n - 1 and phase[j, k + 1] <= count:
+        while k < n - 1 and phase[k + 1] <= count:
             k += 1
-        self.at[j] = min(k, n - 2)
         if k >= n - 1:
+            self.at[j] = n - 2
             return 1e30
-        return k + (count - phase[j, k]) / (phase[j, k + 1] - phase[j, k])
+        self.at[j] = k
+        return k + (count - phase[k]) / (phase[k + 1] - phase[k])
 
     cdef void renew(self, Py_ssize_t j) noexcept nogil:
         """Find anew when column j is due, whose count has changed."""
