@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import io
 import json
+import re
 import shlex
 import subprocess
 import sys
 import zipfile
+import zlib
 
 import jsonschema
 import numpy as np
@@ -16,6 +18,7 @@ from PIL import Image
 from scipy.ndimage import gaussian_filter
 
 from tests.conftest import ROOT, environment
+from tests.formats.photo_cases import cases
 
 
 def strokes(text: bytes) -> list[dict]:
@@ -227,6 +230,41 @@ def test_what_was_read_or_is_lost_is_said_in_one_line(penink, tmp_path):
         done = penink("draw", name, "--width", "1in", "-o", "d.svg", cwd=tmp_path)
         assert done.returncode == 0 and done.stderr.count(said) == 1, done.stderr
         assert all(line.startswith(b"penink draw: warning: ") for line in done.stderr.splitlines()), done.stderr
+
+
+def test_a_raw_s_preview_is_said_to_be_read(penink, tmp_path):
+    case = {case.name: case.data for case in cases()}["a camera raw with a preview"]
+    (tmp_path / "raw.tiff").write_bytes(case)
+    done = penink("draw", "raw.tiff", "--width", "1in", "-o", "d.svg", cwd=tmp_path)
+    assert done.returncode == 0 and done.stderr.count(b"a camera raw") == 1, done.stderr
+    assert b"which is not read: its preview of 40 x 24 is" in done.stderr
+
+
+@pytest.mark.parametrize("ending", ["svg", "pdf", "ps"])
+def test_a_drawing_of_several_layers_is_drawn_in_each_output(penink, tmp_path, ending):
+    """Two inks and lines, a layer each, in this order, each of its colour; what lies below shines through."""
+    y, x = np.mgrid[0:80, 0:100] + 0.5
+    red, blue = np.hypot(x - 35, y - 40) < 22, np.hypot(x - 65, y - 40) < 22
+    photo = np.full((80, 100, 3), 255, np.uint8)
+    photo[red & ~blue], photo[blue & ~red], photo[red & blue] = (200, 40, 50), (40, 60, 190), (40, 20, 60)
+    Image.fromarray(photo).save(tmp_path / "photo.png")
+    inks = ("--inks", "#d2232a,#1b4f9c", "--width", "1in", "-q")
+    ran(penink("draw", "photo.png", *inks, "-o", f"d.{ending}", cwd=tmp_path))
+    text = (tmp_path / f"d.{ending}").read_bytes()
+    if ending == "svg":
+        colours = re.findall(rb'inkscape:groupmode="layer" .*\n *fill="none" stroke="([^"]*)".*multiply', text)
+        assert colours == [b"#d2232a", b"#1b4f9c", b"#1b4f9c"]
+        assert all(b"<path" in layer for layer in text.split(b"inkscape:groupmode")[1:])
+        return
+    if ending == "pdf":
+        parts = [zlib.decompress(part) for part in re.findall(rb"stream\r?\n(.*?)\r?\nendstream", text, re.DOTALL)]
+        assert sum(b"/OC /L1 BDC\n/X1 Do\nEMC\n/OC /L2 BDC\n/X2 Do" in part for part in parts) == 1
+        text = b"".join(parts)
+    word = b"RG" if ending == "pdf" else b"setrgbcolor"
+    found = [tuple(map(float, colour.split())) for colour in re.findall(rb"((?:[\d.]+ ){3})" + word, text)]
+    wanted = [(210 / 255, 35 / 255, 42 / 255), (27 / 255, 79 / 255, 156 / 255), (27 / 255, 79 / 255, 156 / 255)]
+    assert len(found) == 3
+    np.testing.assert_allclose(found, wanted, atol=6e-4)
 
 
 def test_a_picture_for_a_screen_has_the_photo_s_tone_as_it_is(penink, photo, tmp_path):
