@@ -17,7 +17,8 @@ rules/                  best, or what --rule says
     sheet.place             trimmed to the runs that help (_compiled/placing); low_pass: what the eye sees
   stroke_set            example strokes bent along a field
   engraving             lines whose width is the tone
-    tracks                  where they run; taking_turns: which go on where it is light; rims: along borders
+    tracks                  where they run; joining: of ends that face each other; rims: along borders
+      taking_turns            which go on where it is light
   tile                  textures of strokes by priority, the paper's own rule; scaling: those that grow with the picture
   pressure              the hand's, at last
   threshold             what a picture that draws itself does; screens is its table, constants its numbers

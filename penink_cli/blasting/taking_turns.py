@@ -66,6 +66,14 @@ def _neighbours(points: Floats, normals: Floats, which: Ints, some: Ints, spacin
     return out
 
 
+def beside(points: Floats, first: Ints, normals: Floats, samples: Ints, spacing: float) -> npt.NDArray[np.int32]:
+    """(n, 2) the sample of the line next to each of those samples, along its normal and against it; -1 for none."""
+    which = np.repeat(np.arange(len(first) - 1), np.diff(first))
+    out = np.empty((len(samples), 2), np.int32)
+    _neighbours(points, normals, which, np.arange(len(points)), spacing).beside(samples.astype(np.int32), out)
+    return out
+
+
 def distances(points: Floats, first: Ints, normals: Floats, spacing: float) -> tuple[Floats, Floats, Mask]:
     """How far apart lines are at each sample (p,), the mean of both sides; how much more to the normal's side.
 

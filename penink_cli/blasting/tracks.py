@@ -12,7 +12,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 import numpy.typing as npt
 
-from penink_cli.blasting import curves, pen_lines, polylines, rims, walls
+from penink_cli.blasting import curves, joining, pen_lines, polylines, rims, walls
 from penink_cli.blasting.form import PAD, _blurred, _normal
 from penink_cli.blasting.level_lines import LevelLines, level_lines
 from penink_cli.blasting.phase import Field, Nodes, Plane, solve
@@ -36,6 +36,8 @@ FRAME_PEN_PT, END_PT = 1.15, 0.3
 CLEAR_PT, THIN = 1.5, 0.6
 #: Lines along a field are moved so many times by such a part of how much further they are from one neighbour.
 EVENINGS, EVENED = 5, 0.18
+#: At last they are smoothed as if so far apart, points.
+SMOOTHED = 3.0
 #: Their ends are prolonged by so many samples at the most, while lines there are as far apart as this part of their
 #: distance.
 PROLONGED, ROOM = 5, 0.78
@@ -102,6 +104,8 @@ def laid(
     else:
         asked, phase = _known(nodes, engraving, spacing, sheet, seed)
     lines = pen_lines.evened(level_lines(asked, phase, 0.0, sheet.each), SHORTEST_PT)
+    if field is not None and engraving.along:
+        lines = joining.joined(lines, spacing)
     pen_lines.smooth(lines, np.full(len(lines.points), max(spacing, 3.0)))
     if field is not None and engraving.along:
         lines = _evened_out(lines, spacing)
@@ -133,7 +137,9 @@ def _evened_out(lines: LevelLines, spacing: float) -> LevelLines:
     points, first = points[kept], curves.starts(sizes)
     for _ in range(EVENINGS):
         points, _, _ = _moved(points, first, spacing)
-    return LevelLines(points, first, lines.ring)
+    moved = LevelLines(points, first, lines.ring)
+    pen_lines.smooth(moved, np.full(len(points), SMOOTHED))
+    return moved
 
 
 def _moved(points: Floats, first: Ints, spacing: float) -> tuple[Floats, Floats, Mask]:

@@ -5,7 +5,18 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from penink_cli.blasting import constants, engraving, form, pen_lines, phase, screens, shares, taking_turns, tracks
+from penink_cli.blasting import (
+    constants,
+    engraving,
+    form,
+    joining,
+    pen_lines,
+    phase,
+    screens,
+    shares,
+    taking_turns,
+    tracks,
+)
 from penink_cli.blasting import telling as beside
 from penink_cli.ground import pens
 from penink_cli.ground.device import FILLED, MEAN
@@ -43,6 +54,11 @@ FOLLOWING: dict[str, Any] = {
     "FAINT": form.FAINT, "SPARSEST": form.SPARSEST, "RAGGED": form.RAGGED, "STROKE_PT": form.STROKE_PT,
     "EVENINGS": tracks.EVENINGS, "EVENED": tracks.EVENED,
     "PROLONGED": tracks.PROLONGED, "ROOM": tracks.ROOM,
+    "JOIN_BACK": joining.BACK, "JOIN_ASIDE": joining.ASIDE, "JOIN_APART": joining.APART,
+    "JOIN_OVERLAP": joining.OVERLAP, "JOIN_STRAIGHT": joining.STRAIGHT, "JOIN_SLANT": joining.SLANT,
+    "JOIN_WORSE": joining.WORSE,
+    # of two lines that end in one place one leaves off so many samples sooner
+    "SOONER": 10,
     "CELL_PART": taking_turns.CELL, **taking_turns.SEARCH,
     # cells of tone between the places at which a field is looked up
     "FIELD_CELLS": 3,

@@ -117,7 +117,7 @@ def test_a_pages_lines_lie_evenly_where_they_curve(tmp_path):
     y, x = (np.mgrid[:96, :96] + 0.5) / 48 - 1
     angle = 0.6 * np.sin(4.8 * x) + 0.4 * np.sin(3.6 * y)
     field = Directions(np.cos(2 * angle), np.sin(2 * angle), np.ones_like(angle))
-    picture = flat(0.35, "engraving", field, 3)
+    picture = flat(0.35, "engraving", field, 5)
     figures = measures.ray_gaps(middles(page_svg(picture, tmp_path, picture.width), picture.width, picture.height))
     assert figures["cv"] < 0.12 and figures["gaping"] < 0.01  # as the phase has them they are at .13 to .15
 

@@ -10,10 +10,10 @@ function tracksOf(sheet, every, across) {
     // every second line is one on which the phase is 0, the others are half way
     const density = new Float32Array(sheet.tone.length).fill(1 / spacing / 2), walls = wallsOf(sheet);
     const found = linesAlong(sheet, +across, across ? CROSS_ANGLE : 0, density, null, every, walls, Math.max(spacing, 3), [0, 0.5]);
+    found.forEach((lines, odd) => { for (const line of lines) line.odd = odd; });
     // in haste they stay where the phase has them
-    const even = every > 1 ? found.flat() : evenedOut(found.flat(), spacing);
-    even.forEach(([xs, ys, wide], k) => out.push({xs, ys, wide, odd: k < found[0].length ? 0 : 1}));
-    return {tracks: out, spacing};
+    if (every > 1) return {tracks: found.flat().map(([xs, ys], k) => ({xs, ys, odd: k < found[0].length ? 0 : 1})), spacing};
+    return {tracks: evenedOut(joinedUp(found.flat(), spacing), spacing, sheet), spacing};
   }
   const left = blocks.x0 / unit - 2, top = blocks.y0 / unit - 2, right = blocks.x1 / unit + 2, bottom = blocks.y1 / unit + 2;
   if (engraving.centre && !across) {

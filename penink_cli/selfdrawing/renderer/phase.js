@@ -200,6 +200,21 @@ function levelLines({columns, rows, left, top, dx, dy}, psi, nx, ny, density, wa
   return {xs, ys, first, ring};
 }
 
+// Numbers along a line, in place, as means of weights 1 2 1, so many times.
+function softened(at, rounds, ring) {
+  const last = at.length - 1;
+  for (let round = 0; round < rounds; round++) {
+    let before = ring ? at[last - 1] : at[0];
+    for (let i = ring ? 0 : 1; i < last; i++) {
+      const here = at[i];
+      at[i] = (before + 2 * here + at[i + 1]) / 4;
+      before = here;
+    }
+    if (ring) at[last] = at[0];
+  }
+  return at;
+}
+
 // The same lines in steps of about a unit, the corners that the grid gave them taken off: [xs, ys] each.
 function evened({xs, ys, first, ring}, rounds, shortest) {
   const out = [];
@@ -216,15 +231,7 @@ function evened({xs, ys, first, ring}, rounds, shortest) {
       px[i] = xs[k] + t * (xs[k + 1] - xs[k]);
       py[i] = ys[k] + t * (ys[k + 1] - ys[k]);
     }
-    for (let round = 0; round < rounds; round++) for (const at of [px, py]) {
-      let before = ring[line] ? at[steps - 1] : at[0];
-      for (let i = ring[line] ? 0 : 1; i < steps; i++) {
-        const here = at[i];
-        at[i] = (before + 2 * here + at[i + 1]) / 4;
-        before = here;
-      }
-      if (ring[line]) at[steps] = at[0];
-    }
+    for (const at of [px, py]) softened(at, rounds, ring[line]);
     out.push([px, py]);
   }
   return out;
