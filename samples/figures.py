@@ -161,7 +161,7 @@ def billiard(s: Studio) -> None:
 
 CUP = (0.13, 0.0, 2 / 3)  # the part of the coffee shown in each texture, and its side on paper
 SWATCH = 1.9
-TEXTURES = ("parallel", "crosshatch", "crosshatch4", "grain", "scribble", "stipple", "brick", "grass")
+TEXTURES = ("parallel", "crosshatch", "crosshatch4", "grain", "scribble", "stipple", "brick", "lawn")
 
 
 def textures(s: Studio) -> None:

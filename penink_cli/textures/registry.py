@@ -1,6 +1,6 @@
 """The kinds of texture that can be made, all of which come with the program.
 
-A line here and its module in `kinds/`, `grass-blades` in grass_blades.py, make a kind. `make manual` packs its tile
+A line here and its module in `kinds/`, `contour-rings` in contour_rings.py, make a kind. `make manual` packs its tile
 into `tiles/`; until then it is made whenever it is asked for.
 """
 
@@ -16,9 +16,9 @@ KINDS = {
     "form": "lines along the form (see blast --directions), others at a slant over them, black where it is darkest",
     "fur": "short hairs along the form",
     "grain": "wandering lines side by side, like the grain of wood",
-    "grass": "blades that grow upwards and bend",
-    "grass-blades": "blades along the form, of which a lawn is drawn where it stands",
+    "grass": "blades of grass along the form",
     "hair": "long hairs along the form",
+    "lawn": "blades of grass that grow upwards and bend",
     "parallel": "lines in one direction, denser as it gets darker",
     "scribble": "loops of a restless pen",
     "shingle": "a roof of rounded shingles that grows with the picture",

@@ -80,7 +80,7 @@ LEVELS = (0.05, 0.15, 0.25, 0.35, 0.45, 0.55, 0.65, 0.75, 0.85, 0.95)
 
 
 def textures() -> None:
-    names = ("parallel", "grain", "crosshatch4", "stipple", "scribble", "grass", "brick")
+    names = ("parallel", "grain", "crosshatch4", "stipple", "scribble", "lawn", "brick")
     tone_table([(n, 4, t, "best") for t in names for n in PHOTOS[:4]])
     pairs = [(t, w) for t in ("parallel", "grain", "stipple", "scribble") for w in (2, 8)]
     tone_table([(n, w, t, "best") for t, w in pairs for n in PHOTOS[:4]])
@@ -89,7 +89,7 @@ def textures() -> None:
 def light() -> None:
     levels = (0.005, 0.01, 0.02, 0.03, 0.05, 0.08)
     print("light flats, 4 × 4 in, bias / RMS:  " + "  ".join(f"{level:11.1%}" for level in levels))
-    for texture in ("crosshatch", "grain", "stipple", "scribble", "grass"):
+    for texture in ("crosshatch", "grain", "stipple", "scribble", "lawn"):
         cells = []
         for level in levels:
             wanted = np.full((32, 32), level)

@@ -152,7 +152,7 @@ def sets() -> None:
     """Tone of photographs in sets of oriented strokes, printed at 600 dpi, and what they cost."""
     print("set            photograph  inches   RMS %   bias   strokes  blast, s")
     for name, inches, texture in (
-        ("camera", 4, "fur"), ("camera", 8, "grass-blades"), ("coins", 4, "hair"), ("coins", 8, "barb"),
+        ("camera", 4, "fur"), ("camera", 8, "grass"), ("coins", 4, "hair"), ("coins", 8, "barb"),
         ("astronaut", 4, "hair"), ("astronaut", 8, "fur"), ("chelsea", 4, "fur"), ("chelsea", 8, "hair"),
     ):  # fmt: skip
         photo = photograph(name)
@@ -173,7 +173,7 @@ def sets() -> None:
 def one_pen() -> None:
     """Flat tones in one pen of .3 mm: what no pressure of the hand evens out."""
     print("set, one pen of .3 mm, flat, 4 in     tone   RMS %   bias   strokes")
-    for texture in ("fur", "hair", "barb", "grass-blades"):
+    for texture in ("fur", "hair", "barb", "grass"):
         for value in (0.2, 0.4, 0.7):
             tone = np.full((64, 64), value)
             strokes = blast(tone, 288, 288, None, find_texture(texture), pen_pt=0.3 / 25.4 * 72)

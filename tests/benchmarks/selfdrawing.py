@@ -90,7 +90,7 @@ def size(folder: Path) -> None:
         p = picture("camera", n, **options)
         sizes = [len(postscript.write(p)), len(postscript.write(p, "lzw")), len(html.write(p, "camera"))]
         print(f"  {n} x {n}, {len(data.as_sent(p.layers[0])[1].edges)}: {sizes}")
-    for texture in ("parallel", "crosshatch4", "grain", "stipple", "scribble", "brick", "grass"):
+    for texture in ("parallel", "crosshatch4", "grain", "stipple", "scribble", "brick", "lawn"):
         p = picture("camera", texture=texture)
         print(f"  96 x 96, {texture}: {[len(postscript.write(p)), len(html.write(p, 'camera'))]}")
 
@@ -140,7 +140,7 @@ def poster(folder: Path) -> None:
 def textures(folder: Path) -> None:
     """The other textures."""
     print(HEAD)
-    for texture in ("parallel", "crosshatch4", "grain", "stipple", "scribble", "brick", "grass"):
+    for texture in ("parallel", "crosshatch4", "grain", "stipple", "scribble", "brick", "lawn"):
         for photo in ("camera", "coins", "moon"):
             row(photo, 4, 600, folder, texture)
 

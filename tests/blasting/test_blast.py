@@ -67,7 +67,7 @@ def test_the_papers_rule_is_no_lighter_where_a_photograph_is_noisy():
 def test_the_threshold_rule_draws_nothing_where_the_paper_is_white():
     wanted = np.zeros((50, 50))
     wanted[:, 25:] = 0.5
-    strokes = blast(wanted, 144, 144, None, find_texture("grass"), rule="threshold")
+    strokes = blast(wanted, 144, 144, None, find_texture("lawn"), rule="threshold")
     assert len(strokes) > 50 and strokes.points[:, 0].min() > 68
 
 
@@ -172,7 +172,7 @@ def test_ink_on_a_flat_field_is_in_long_strokes():
     assert measures.long_share(blast(flat(0.3), 288, 288, None, find_texture("crosshatch"))) > 0.95
 
 
-@pytest.mark.parametrize("texture", ["crosshatch", "grass"])
+@pytest.mark.parametrize("texture", ["crosshatch", "lawn", "grass"])
 def test_threads_change_no_byte(texture):
     wanted = np.add.outer(np.linspace(0, 0.5, 60), np.linspace(0, 0.5, 80))
     one, two, eight = (blast(wanted, 320, 200, None, find_texture(texture), threads=n) for n in (1, 2, 8))
@@ -237,7 +237,7 @@ def test_all_ink_lies_within_the_frame():
 
 @pytest.mark.parametrize("level", [0.0, 1e-6, 0.5, 1.0])
 @pytest.mark.parametrize("size", [(0.3, 0.2), (1, 200), (200, 1), (7, 7), (60, 60)])
-@pytest.mark.parametrize("texture", ["crosshatch", "stipple", "grass", "fur"])
+@pytest.mark.parametrize("texture", ["crosshatch", "stipple", "lawn", "fur"])
 def test_any_sheet_and_any_tone(texture, size, level):
     for shape in ((1, 1), (1, 40), (40, 1), (33, 17)):
         strokes = blast(np.full(shape, level), *size, None, find_texture(texture))

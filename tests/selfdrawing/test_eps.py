@@ -89,7 +89,7 @@ def test_twice_in_a_run_it_draws_the_same(eps, tmp_path):
     assert first == second and len(set(first)) > 20
 
 
-@pytest.mark.parametrize("name", ["stipple", "grass", "grain"])
+@pytest.mark.parametrize("name", ["stipple", "lawn", "grain"])
 def test_every_kind_of_texture_keeps_its_tone(name, tmp_path):
     picture = illustration(texture=find_texture(name))
     wanted = expected_tone(picture.layers[0], 108, 108).mean() / 255

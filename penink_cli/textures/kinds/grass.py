@@ -1,31 +1,20 @@
-"""Blades that grow upwards and bend."""
+"""Blades along the form, from the tip, of which a lawn is drawn where it stands."""
 
 from __future__ import annotations
 
-import numpy as np
+from penink_cli.ground.model import Texture
+from penink_cli.textures.sets import oriented
 
-from penink_cli.ground import exact
-from penink_cli.ground.model import Floats, Texture
-from penink_cli.textures.even import Torus
-from penink_cli.textures.filling import FULL, GAIN_PT, fill, tile
-from penink_cli.textures.normal import normal
+#: Control points x, y of chains of cubics, points.
+EXAMPLES = (
+    (0, 0, 3, 2.2, 10, 3.6, 24, 3.9),
+    (0, 0, 5, 1.6, 12, 2.3, 19, 2.2),
+    (0, 0, 2, 3.4, 11, 5.2, 29, 5.4),
+    (0, 0, 6, 0.7, 11, 0.9, 16, 0.6),
+    (0, 0, 7, 1.0, 16, 1.2, 27, 0.2),
+)
 
 
-def make(*, angle: float = 0.0, pen: float = 0.4, seed: int = 0) -> Texture:
-    """Blades that grow upwards and bend."""
-    size = 96.0
-    torus = Torus(size, size, 0.7)
-
-    def blades(rng: np.random.Generator, n: int) -> Floats:
-        lean = np.radians(-90.0 + angle + normal(rng, 16, n))
-        bend = normal(rng, 0.5, n)
-        length = rng.uniform(10, 26, n)
-        foot = rng.uniform(0, size, (n, 2))
-        out = np.empty((n, 4, 2))
-        for j, (reach, turn) in enumerate(((0.0, 0.0), (0.34, 0.1), (0.7, 0.45), (1.0, 1.0))):
-            a = lean + bend * turn
-            out[:, j] = foot + (reach * length)[:, None] * np.column_stack(exact.cos_sin(a))
-        return out
-
-    strokes = fill(torus, blades, pen + GAIN_PT, FULL + 0.01, 0.0, 32, np.random.default_rng(seed))
-    return tile("grass", strokes, [pen] * len(strokes), size, size, seed)
+def make(*, pen: float = 0.4) -> Texture:
+    """The set, drawn with one pen."""
+    return oriented("grass", EXAMPLES, pen)
