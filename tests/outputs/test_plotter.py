@@ -327,6 +327,36 @@ def test_papers_and_places(tmp_path, penink, options, page, place):
         assert sorted(size) == pytest.approx(sorted(page), abs=0.01)
 
 
+def table(columns):
+    """The rows of the README's table with that many columns, about sheets or about layers."""
+    text = (ROOT / "README.md").read_text("utf-8")
+    rows = re.findall(r"^\| `(--[^`|]*)`(.*)\|$", text, re.MULTILINE)
+    return [(options.split(), more.split("|")) for options, more in rows if more.count("|") == columns - 1]
+
+
+SHEETS_TOLD = [(options, *cells[1:]) for options, cells in table(3)]
+LOADS_TOLD = [(options, cells[1]) for options, cells in table(2)]
+
+
+def test_the_readme_has_both_tables():
+    assert len(SHEETS_TOLD) >= 8 and len(LOADS_TOLD) >= 4
+
+
+@pytest.mark.parametrize(("options", "page", "place"), SHEETS_TOLD, ids=[" ".join(row[0]) for row in SHEETS_TOLD])
+def test_sheets_are_as_the_readme_says(tmp_path, penink, options, page, place):
+    sides = tuple(float(side) for side in page.split("×"))
+    test_papers_and_places(tmp_path, penink, tuple(options), sides, tuple(float(v) for v in place.split(",")))
+
+
+@pytest.mark.parametrize(("options", "counts"), LOADS_TOLD, ids=[" ".join(row[0]) for row in LOADS_TOLD])
+def test_layers_are_as_the_readme_says(tmp_path, penink, options, counts):
+    path = saved(tmp_path, "lines", strokes_of([[[0, i], [30, i], [60, i], [100 * MM, i]] for i in range(10)], 0.85))
+    options = [pens_file(tmp_path) if word == "FILE" else word for word in options]
+    layers = subpaths(drawn(penink, *options, path)[0])
+    assert [len(strokes) for _, _, strokes in layers] == [int(count) for count in counts.split(",")]
+    assert [label.startswith("!") for label, _, _ in layers] == [False] + [True] * (len(layers) - 1)
+
+
 @pytest.mark.parametrize("value", ["20mm", "1,2,3", "a,b", "-1,2"])
 def test_what_is_no_place_is_a_usage_error(penink, value):
     assert penink("to-svg", "--at", value, input=b"").returncode == 2
