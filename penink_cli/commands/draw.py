@@ -14,10 +14,10 @@ from penink_cli.chain.job import ARCHIVE
 from penink_cli.chain.kept import Kept
 from penink_cli.chain.many import draw_all, output_names
 from penink_cli.chain.request import Request, checked_style, page_words, pen_of_all
-from penink_cli.commands.compose import composition_options
 from penink_cli.ground import streams
 from penink_cli.ground.errors import in_quotes
 from penink_cli.options.common import LENGTH, DeviceDpi, Finite, output_options, threads_option, verbose_option
+from penink_cli.options.composition import composition_options
 from penink_cli.options.inks import Inks, inks_option
 from penink_cli.options.inputs import only_one_standard_input, photo_options
 from penink_cli.options.layers import colour_option, page_options

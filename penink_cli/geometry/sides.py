@@ -20,7 +20,7 @@ _ROUNDS = 3
 
 
 def _side(a: Point, b: Point, sample: Point) -> bool:
-    """Whether a sample is to the left of a → b; one that is on it stands a little off it (RECONSTRUCTION's ties)."""
+    """Whether a sample is to the left of a → b; one that is on it stands off it by (ε, ε²), see predicates."""
     turn = (b[0] - a[0]) * (sample[1] - a[1]) - (b[1] - a[1]) * (sample[0] - a[0])
     return (turn or a[1] - b[1] or b[0] - a[0]) > 0
 

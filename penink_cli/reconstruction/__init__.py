@@ -16,5 +16,4 @@ enlarge      samples, edges → rows of any size
     fades, sums         attenuations, weighted sums (equation 5); lanes: the make for this processor
 easing       samples of few levels → the ramps that they were rounded from
 soften       the paper's last factor of two
-weights      equation 5 at any points as a linear operator, which tests hold the rows against
 """

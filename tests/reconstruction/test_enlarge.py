@@ -13,9 +13,9 @@ from penink_cli.reconstruction import enlarge as enlarging
 from penink_cli.reconstruction import lanes
 from penink_cli.reconstruction.enlarge import enlarge, reconstruct
 from penink_cli.reconstruction.paths import Paths, reach
-from penink_cli.reconstruction.weights import weights
 from tests.oracles import brute
 from tests.oracles.triangulated import Triangulated
+from tests.oracles.weights import weights
 from tests.reconstruction.arrangements import HOSTILE, chain, edge_list, random_edges, tiny
 
 UNIT = 1 / 65535

@@ -7,8 +7,8 @@ import pytest
 
 from penink_cli.reconstruction.kernels import taps
 from penink_cli.reconstruction.paths import Paths, spill
-from penink_cli.reconstruction.weights import weights
 from tests.oracles import brute
+from tests.oracles.weights import weights
 from tests.reconstruction.arrangements import HOSTILE, chain, random_edges
 
 

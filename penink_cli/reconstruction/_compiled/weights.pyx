@@ -1,7 +1,8 @@
 # cython: boundscheck=False, wraparound=False, cdivision=True
 """The reconstruction at single points: the weight that equation 5 gives to each sample under the kernel.
 
-Slower than the tiles of an enlargement, and free of their conditions: any points, any widening of the kernels.
+Slower than the tiles of an enlargement, and free of their conditions: any points, any widening of the kernels. Images
+are made smaller so (`lattice`); at single points (`scattered`) tests hold the tiles to it.
 """
 
 from penink_cli.reconstruction._compiled.search cimport Finder

@@ -1,6 +1,7 @@
 """The rows of the reconstruction as a linear operator: f(x) = Σ weight · sample, edges held fixed (equation 5).
 
-Given the edges the reconstruction is linear in the samples, so that samples can be fitted to a photo.
+Given the edges the reconstruction is linear in the samples. This goes point by point, by the kernel of reductions. It
+shares the search with the tiles of an enlargement and nothing after it, so the tiles are held to it.
 """
 
 from __future__ import annotations
