@@ -95,23 +95,24 @@ def detect_lines(
         given = directions(height, width)
         cos2, sin2 = (np.ascontiguousarray(part, np.float32) for part in (given.cos2, given.sin2))
     fine = oriented.responses(even, *FINE, threads)
+    sides = _weighed(fine, threads)
     found: list[_Line] = []
     if black:
-        most = oriented.strongest(fine, 1.0, threads)
-        strong = blurred(most[0], 16.0, threads)
+        strong = blurred(sides.most[0], 16.0, threads)
         things = spots(picture, threads)
         inside, about = (covered(things, picture.shape, margin) for margin in BESIDE_SPOT)
-        strokes = _lines(_traced(fine, 1.0, HIGH, tone, cos2, sin2, threads, most, last=not white), shortest)
+        strokes = _lines(_traced(fine, 1.0, HIGH, tone, cos2, sin2, sides), shortest)
         strokes = [line for line in strokes if not _within(line.points, inside)]
         half, tone2, cos, sin = (halved(part, threads) for part in (even, tone, cos2, sin2))
         coarse = oriented.responses(half, *COARSE, threads)
-        broad = _lines(_traced(coarse, 1.0, HIGH, tone2, cos, sin, threads, last=True).doubled(), 2 * shortest)
+        of_coarse = _weighed(coarse, threads)
+        broad = _lines(_traced(coarse, 1.0, HIGH, tone2, cos, sin, of_coarse).doubled(), 2 * shortest)
         near = _near([line.points for line in strokes if line.rank >= FAR_RANK], picture.shape)
         found += strokes
         found += [line for line in broad if _far(line.points, near) and not _within(line.points, about)]
         found += [_spot_line(spot, strong) for spot in things]
     if white:
-        light = _traced(fine, -1.0, WHITE_HIGH, 1 - tone, cos2, sin2, threads, last=True)
+        light = _traced(fine, -1.0, WHITE_HIGH, 1 - tone, cos2, sin2, sides)
         lit = _lines(light, shortest)
         found += [line.made_white() for line, ridge in zip(lit, _ridges(lit, picture)) if ridge >= RIDGE]
     found = [line for line in found if line.rank >= LEAST_RANK and not _at_rim(line, picture.shape)]
@@ -180,18 +181,40 @@ def field(picture: Picture, threads: int) -> tuple[Picture, Picture]:
     return cos2 / length, sin2 / length
 
 
-def _traced(
-    bank: oriented.Bank, sign: float, high: float, ground: Picture, cos2: Picture, sin2: Picture, threads: int,
-    strongest: tuple[Picture, Picture] | None = None, last: bool = False,
-) -> Traces:  # fmt: skip
-    """Lines of one sign in a bank. strongest: its strongest responses, if known. last: the bank is not needed again."""
-    most, mean = strongest or oriented.strongest(bank, sign, threads)
+@dataclass(frozen=True)
+class _Sides:
+    """What is known of the responses of each sign in a bank, first of dark lines, then of light ones.
+
+    most: the strongest in any direction. around: of what is around. Both (h, w).
+    """
+
+    most: tuple[Picture, Picture]
+    around: tuple[Picture, Picture]
+
+
+def _weighed(bank: oriented.Bank, threads: int) -> _Sides:
+    """Weigh a bank's responses by what is around, in their place; what they were."""
+    sides = [oriented.strongest(bank, sign, threads) for sign in (1.0, -1.0)]
     # a dot answers in every direction, a line in few
-    factor = np.clip((1 - mean / (most + np.float32(1e-6))) / np.float32(0.35), 0, 1).astype(np.float32)
-    around = np.maximum(blurred(most, 16.0, threads) - blurred(most, 4.0, threads) / np.float32(32), np.float32(0))
-    less = np.float32(2 * INHIBITION) * around
-    answers = oriented.weighed(bank, sign, factor, less, threads, bank if last else None)
-    return tracing.traces(answers, high, high * LOW / HIGH, around, ground, cos2, sin2)
+    factors = [
+        np.clip((1 - mean / (most + np.float32(1e-6))) / np.float32(0.35), 0, 1).astype(np.float32)
+        for most, mean in sides
+    ]
+    around = [
+        np.maximum(blurred(most, 16.0, threads) - blurred(most, 4.0, threads) / np.float32(32), np.float32(0))
+        for most, _ in sides
+    ]
+    less = [np.float32(2 * INHIBITION) * values for values in around]
+    oriented.weigh(bank, (factors[0], less[0]), (factors[1], less[1]), threads)
+    return _Sides((sides[0][0], sides[1][0]), (around[0], around[1]))
+
+
+def _traced(
+    bank: oriented.Bank, sign: float, high: float, ground: Picture, cos2: Picture, sin2: Picture, sides: _Sides
+) -> Traces:
+    """Lines of one sign in a bank that has been weighed."""
+    around = sides.around[0 if sign > 0 else 1]
+    return tracing.traces(bank, sign, high, high * LOW / HIGH, around, ground, cos2, sin2)
 
 
 def _lines(traces: Traces, shortest: float) -> list[_Line]:

@@ -88,10 +88,10 @@ def strongest(bank: Bank, sign: float, threads: int) -> tuple[Picture, Picture]:
     return most, mean
 
 
-def weighed(bank: Bank, sign: float, factor: Picture, less: Picture, threads: int, into: Bank | None = None) -> Bank:
-    """Responses of this sign × factor (h, w) − less (h, w), or 0. into: room for them, the bank itself maybe."""
-    out = np.empty_like(bank) if into is None else into
-    h = bank.shape[1]
-    work = threading.ranges(lambda top, bottom: oriented.weighed(bank, sign, factor, less, out, top, bottom), h, _BAND)
+def weigh(bank: Bank, dark: tuple[Picture, Picture], light: tuple[Picture, Picture], threads: int) -> None:
+    """Weigh a bank in its place: responses r become ± (± r · factor − less), or 0.
+
+    dark, light: factor and less (h, w) of those above 0, and of those below.
+    """
+    work = threading.ranges(lambda top, bottom: oriented.weigh(bank, *dark, *light, top, bottom), bank.shape[1], _BAND)
     threading.share(work, threads)
-    return out

@@ -17,6 +17,7 @@ from penink_cli.lines.oriented import DIRECTIONS, Bank, Picture, units
 LONGEST = 4000  # steps of a pixel, to each side
 WIDE = 2.2  # pixels to each side that a line takes up, for lines of nearly its direction
 LEAST = 5  # points
+SEEDS = 64  # responses to a seed: room for more is made where there are
 TRIMMED = 0.5  # ends are trimmed below this part of a line's mean response
 
 
@@ -54,16 +55,20 @@ class Traces:
 
 
 def traces(
-    bank: Bank, high: float, low: float, around: Picture, ground: Picture, cos2: Picture, sin2: Picture
+    bank: Bank, sign: float, high: float, low: float, around: Picture, ground: Picture, cos2: Picture, sin2: Picture
 ) -> Traces:
     """Lines that reach the response `high` somewhere and go on down to `low`, the strongest first.
 
-    bank: (DIRECTIONS, h, w) responses, not below 0. around, ground, cos2, sin2: (h, w), see `Traces`.
+    bank: (DIRECTIONS, h, w) responses, those of this sign. around, ground, cos2, sin2: (h, w), see `Traces`.
     """
     unit = units(8 * DIRECTIONS)
-    seeds = np.empty((tracing.peaks(bank, unit, high, np.empty((0, 3), np.int32)), 3), np.int32)
-    tracing.peaks(bank, unit, high, seeds)
-    seeds = seeds[np.argsort(-bank[seeds[:, 0], seeds[:, 1], seeds[:, 2]], kind="stable")]
+    seeds = np.empty((bank.size // SEEDS, 3), np.int32)
+    count = tracing.peaks(bank, sign, unit, high, seeds)
+    if count > len(seeds):
+        seeds = np.empty((count, 3), np.int32)
+        tracing.peaks(bank, sign, unit, high, seeds)
+    seeds = seeds[:count]
+    seeds = seeds[np.argsort(-sign * bank[seeds[:, 0], seeds[:, 1], seeds[:, 2]], kind="stable")]
     used = np.zeros(bank.shape, np.uint8)
     there, back = np.empty((LONGEST, 4)), np.empty((LONGEST, 4))
     room, starts = np.empty((64 * LONGEST, 4)), np.empty(1 << 14, np.int64)
@@ -71,7 +76,9 @@ def traces(
     sizes: list[Ints] = []
     begin, more = 0, True
     while more:
-        begin, count, more = tracing.follow(bank, unit, seeds, begin, low, WIDE, LEAST, used, there, back, room, starts)
+        begin, count, more = tracing.follow(
+            bank, sign, unit, seeds, begin, low, WIDE, LEAST, used, there, back, room, starts
+        )
         parts.append(room[: starts[count], :3].copy())
         sizes.append(np.diff(starts[: count + 1]))
     points, counts = np.ascontiguousarray(np.concatenate(parts)), np.concatenate(sizes)

@@ -48,25 +48,25 @@ def strongest(const float[:, :, ::1] bank, float sign, float[:, ::1] most, float
                     s[q] = s[q] + part * v
 
 
-def weighed(const float[:, :, ::1] bank, float sign, const float[:, ::1] factor, const float[:, ::1] less,
-            float[:, :, ::1] out, Py_ssize_t top, Py_ssize_t bottom):
-    """Responses of this sign times factor, less what is around; 0 where nothing is left."""
+def weigh(float[:, :, ::1] bank, const float[:, ::1] factor, const float[:, ::1] less,
+          const float[:, ::1] light_factor, const float[:, ::1] light_less, Py_ssize_t top, Py_ssize_t bottom):
+    """Responses times factor, less what is around; 0 where nothing is left. Those below 0 by what is told of light ones."""
     cdef Py_ssize_t i, q, k
     cdef Py_ssize_t n = bank.shape[0], w = bank.shape[2]
-    cdef float v
-    cdef const float *r
+    cdef float v, u
+    cdef float *r
     cdef const float *f
     cdef const float *s
-    cdef float *into
+    cdef const float *g
+    cdef const float *t
     with nogil:
-        for k in range(n):
-            for i in range(top, bottom):
+        for i in range(top, bottom):
+            f, s, g, t = &factor[i, 0], &less[i, 0], &light_factor[i, 0], &light_less[i, 0]
+            for k in range(n):
                 r = &bank[k, i, 0]
-                f = &factor[i, 0]
-                s = &less[i, 0]
-                into = &out[k, i, 0]
                 for q in range(w):
-                    v = sign * r[q]
+                    v = r[q] * f[q] - s[q]
                     v = v if v > 0.0 else <float>0.0
-                    v = v * f[q] - s[q]
-                    into[q] = v if v > 0.0 else <float>0.0
+                    u = -r[q] * g[q] - t[q]
+                    u = u if u > 0.0 else <float>0.0
+                    r[q] = v if r[q] > 0.0 else -u

@@ -1,7 +1,8 @@
 # cython: boundscheck=False, wraparound=False, cdivision=True
 """Compiled: lines followed through the responses of a bank of oriented filters. See tracing.py.
 
-Directions are counted in quarters of a bin: 4 n of them are half a turn, 8 n a whole one.
+Directions are counted in quarters of a bin: 4 n of them are half a turn, 8 n a whole one. A bank holds the responses of
+dark lines, above 0, and of light ones, below; `sign` says which are followed, and the others are 0.
 
              ╱         One step of a walk: of five directions, three quarters of a bin apart, the one whose response a
            ╱           pixel on is greatest. Straight on is preferred a little. Then the place is moved across the
@@ -17,7 +18,15 @@ cdef enum:
     TAKEN = 3  # and along another
 
 
-cdef inline float _at(const float *layer, Py_ssize_t h, Py_ssize_t w, double x, double y) noexcept nogil:
+cdef inline float _own(float response, float sign) noexcept nogil:
+    """A response of this sign, or 0."""
+    response = sign * response
+    return response if response > 0.0 else <float>0.0
+
+
+cdef inline float _at(
+    const float *layer, float sign, Py_ssize_t h, Py_ssize_t w, double x, double y
+) noexcept nogil:
     """One layer at (x, y), between pixel centres at whole numbers; beyond the frame as at its rim."""
     cdef Py_ssize_t i, j
     cdef double fx, fy
@@ -27,11 +36,14 @@ cdef inline float _at(const float *layer, Py_ssize_t h, Py_ssize_t w, double x, 
     fy, fx = y - i, x - j
     layer += i * w + j
     return <float>(
-        (layer[0] * (1.0 - fx) + layer[1] * fx) * (1.0 - fy) + (layer[w] * (1.0 - fx) + layer[w + 1] * fx) * fy
+        (_own(layer[0], sign) * (1.0 - fx) + _own(layer[1], sign) * fx) * (1.0 - fy)
+        + (_own(layer[w], sign) * (1.0 - fx) + _own(layer[w + 1], sign) * fx) * fy
     )
 
 
-cdef inline double _towards(const float[:, :, ::1] bank, Py_ssize_t f, double x, double y) noexcept nogil:
+cdef inline double _towards(
+    const float[:, :, ::1] bank, float sign, Py_ssize_t f, double x, double y
+) noexcept nogil:
     """The response in direction f at (x, y), between the two layers nearest to it."""
     cdef Py_ssize_t n = bank.shape[0], h = bank.shape[1], w = bank.shape[2]
     cdef Py_ssize_t k
@@ -41,11 +53,11 @@ cdef inline double _towards(const float[:, :, ::1] bank, Py_ssize_t f, double x,
     k = f >> 2
     d = 0.25 * (f & 3)
     if d == 0.0:
-        return _at(&bank[k, 0, 0], h, w, x, y)
-    return _at(&bank[k, 0, 0], h, w, x, y) * (1.0 - d) + _at(&bank[(k + 1) % n, 0, 0], h, w, x, y) * d
+        return _at(&bank[k, 0, 0], sign, h, w, x, y)
+    return _at(&bank[k, 0, 0], sign, h, w, x, y) * (1.0 - d) + _at(&bank[(k + 1) % n, 0, 0], sign, h, w, x, y) * d
 
 
-def peaks(const float[:, :, ::1] bank, const double[:, ::1] unit, float high, int[:, ::1] out):
+def peaks(const float[:, :, ::1] bank, float sign, const double[:, ::1] unit, float high, int[:, ::1] out):
     """Count where a response reaches high and is the greatest among its neighbours across the line and in direction.
 
     unit: (8 n, 2) the unit vector of each quarter. out: (m, 3) the first m of them, as layer, row, column.
@@ -63,10 +75,12 @@ def peaks(const float[:, :, ::1] bank, const double[:, ::1] unit, float high, in
             for i in range(2, h - 2):
                 here, after, before = &bank[k, i, 0], &bank[(k + 1) % n, i, 0], &bank[(k + n - 1) % n, i, 0]
                 for j in range(2, w - 2):
-                    c = here[j]
-                    if c < high or after[j] > c or before[j] >= c:
+                    c = sign * here[j]
+                    if c < high or sign * after[j] > c or sign * before[j] >= c:
                         continue
-                    if _at(&bank[k, 0, 0], h, w, j + nx, i + ny) > c or _at(&bank[k, 0, 0], h, w, j - nx, i - ny) >= c:
+                    if _at(&bank[k, 0, 0], sign, h, w, j + nx, i + ny) > c:
+                        continue
+                    if _at(&bank[k, 0, 0], sign, h, w, j - nx, i - ny) >= c:
                         continue
                     if found < out.shape[0]:
                         out[found, 0], out[found, 1], out[found, 2] = <int>k, <int>i, <int>j
@@ -75,7 +89,7 @@ def peaks(const float[:, :, ::1] bank, const double[:, ::1] unit, float high, in
 
 
 cdef Py_ssize_t _walk(
-    const float[:, :, ::1] bank, const unsigned char[:, :, ::1] used, const double[:, ::1] unit, double low,
+    const float[:, :, ::1] bank, float sign, const unsigned char[:, :, ::1] used, const double[:, ::1] unit, double low,
     Py_ssize_t f, double x, double y, double[:, ::1] out, double sx, double sy, Py_ssize_t most, bint *closed,
 ) noexcept nogil:
     """Points of a line from (x, y) in direction f on, as x, y, response, direction; how many of them."""
@@ -89,13 +103,13 @@ cdef Py_ssize_t _walk(
             g = f + 3 * turn
             g = (g + 8 * n) % (8 * n)
             mx, my = x + unit[g, 0], y + unit[g, 1]
-            v = _towards(bank, g, mx, my) * (1.0 - 0.03 * (turn if turn >= 0 else -turn))
+            v = _towards(bank, sign, g, mx, my) * (1.0 - 0.03 * (turn if turn >= 0 else -turn))
             if v > best:
                 best, best_g, bx, by = v, g, mx, my
         nx, ny = -unit[best_g, 1], unit[best_g, 0]
-        left = _towards(bank, best_g, bx - 0.7 * nx, by - 0.7 * ny)
-        middle = _towards(bank, best_g, bx, by)
-        right = _towards(bank, best_g, bx + 0.7 * nx, by + 0.7 * ny)
+        left = _towards(bank, sign, best_g, bx - 0.7 * nx, by - 0.7 * ny)
+        middle = _towards(bank, sign, best_g, bx, by)
+        right = _towards(bank, sign, best_g, bx + 0.7 * nx, by + 0.7 * ny)
         d = left - 2.0 * middle + right
         if d < -1e-9:
             d = 0.35 * (left - right) / d
@@ -103,7 +117,7 @@ cdef Py_ssize_t _walk(
             bx, by = bx + d * nx, by + d * ny
         if bx < 0.0 or by < 0.0 or bx > w - 1 or by > h - 1:
             break
-        v = _towards(bank, best_g, bx, by)
+        v = _towards(bank, sign, best_g, bx, by)
         weak = weak + 1 if v < low else 0
         if weak > WEAK:
             break
@@ -138,7 +152,7 @@ cdef void _take(unsigned char[:, :, ::1] used, const double[:, ::1] line, Py_ssi
 
 
 def follow(
-    const float[:, :, ::1] bank, const double[:, ::1] unit, const int[:, ::1] seeds, Py_ssize_t begin,
+    const float[:, :, ::1] bank, float sign, const double[:, ::1] unit, const int[:, ::1] seeds, Py_ssize_t begin,
     double low, double wide, Py_ssize_t least, unsigned char[:, :, ::1] used, double[:, ::1] there, double[:, ::1] back,
     double[:, ::1] points, long long[::1] first,
 ):
@@ -161,16 +175,16 @@ def follow(
             if used[k, i, j]:
                 continue
             b = 0
-            a = _walk(bank, used, unit, low, 4 * k, j, i, there, j, i, room, &closed)
+            a = _walk(bank, sign, used, unit, low, 4 * k, j, i, there, j, i, room, &closed)
             if not closed:
-                b = _walk(bank, used, unit, low, 4 * (k + n), j, i, back, j, i, room, &closed)
+                b = _walk(bank, sign, used, unit, low, 4 * (k + n), j, i, back, j, i, room, &closed)
                 closed = False
             size = at
             for t in range(b - 1, -1, -1):
                 points[at, 0], points[at, 1], points[at, 2] = back[t, 0], back[t, 1], back[t, 2]
                 points[at, 3] = (<Py_ssize_t>back[t, 3] + 4 * n) % (8 * n)
                 at += 1
-            points[at, 0], points[at, 1], points[at, 2], points[at, 3] = j, i, bank[k, i, j], 4 * k
+            points[at, 0], points[at, 1], points[at, 2], points[at, 3] = j, i, sign * bank[k, i, j], 4 * k
             at += 1
             for t in range(a):
                 points[at, 0], points[at, 1] = there[t, 0], there[t, 1]
