@@ -50,7 +50,7 @@ def strongest(const float[:, :, ::1] bank, float sign, float[:, ::1] most, float
 
 def weigh(float[:, :, ::1] bank, const float[:, ::1] factor, const float[:, ::1] less,
           const float[:, ::1] light_factor, const float[:, ::1] light_less, Py_ssize_t top, Py_ssize_t bottom):
-    """Responses times factor, less what is around; 0 where nothing is left. Those below 0 by what is told of light ones."""
+    """Responses times factor, less what is around, or 0; those below 0 by what is told of light ones."""
     cdef Py_ssize_t i, q, k
     cdef Py_ssize_t n = bank.shape[0], w = bank.shape[2]
     cdef float v, u
