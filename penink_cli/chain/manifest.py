@@ -58,7 +58,11 @@ def _reduced(job: Job, plate: Plate, size: tuple[int, int], edges: str) -> str:
     reduced = job.chain.name(plate.named("reduced.pgm"))
     reduce = ["-e", edges, "--photo", plate.grey]
     auto = [*reduce, "--auto", "--seen-at", repr(job.width)]
-    auto += ["--max-error", repr(RICH_ERROR)] * ("max_bytes" in job.given) + [samples]
+    if "max_bytes" in job.given:
+        auto += ["--max-error", repr(RICH_ERROR)]
+    elif job.stages["compose"].get("strength") != 0:  # else what is faint is to be faint
+        auto.append("--relative")
+    auto.append(samples)
     # A page draws itself. No grid comes near to a photo of noise or fine texture: half of it is enough.
     if job.ending == ".html" or not job.chain.run("reduce", auto, reduced, may_fail=True):
         shrink = max(2.0, max(size) / DEVICE_SIDE)

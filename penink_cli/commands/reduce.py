@@ -44,6 +44,7 @@ from penink_cli.options.inputs import (
     type=LENGTH,
     help="Count what a drawing of this width can show: the difference blurred by a point on paper.",
 )
+@click.option("--relative", is_flag=True, help="Allow faint photos as much less error: it hides more of them.")
 @click.option(
     "--fit",
     type=click.Choice(["none", "lsq"]),
@@ -72,6 +73,7 @@ def reduce(
     auto: bool,
     max_error: float | None,
     seen_at: float | None,
+    relative: bool,
     fit: str,
     photo_file: str | None,
     maxval: int | None,
@@ -94,8 +96,10 @@ def reduce(
 
     if (factor is not None) + (size is not None) + auto != 1:
         raise click.UsageError("one of --factor, --size and --auto is needed")
-    if (max_error is not None or seen_at is not None) and not auto:
-        raise click.UsageError(f"{'--seen-at' if max_error is None else '--max-error'} goes with --auto")
+    if not auto:
+        for name, told in (("max-error", max_error), ("seen-at", seen_at), ("relative", relative or None)):
+            if told is not None:
+                raise click.UsageError(f"--{name} goes with --auto")
     only_one_standard_input(file, edges_file, photo_file or "")
     edges = read_edges(edges_file, max_pixels)
     samples = read_grey(file, photo_limit(max_pixels))
@@ -119,7 +123,8 @@ def reduce(
     if size is None:
         limit = None if max_error is None else max_error / 255
         chosen = grid.choose_grid(
-            samples.grey, edges, limit, seen_at=seen_at, photo=photo, fit=fit, threads=threads, report=say
+            samples.grey, edges, limit, seen_at=seen_at, relative=relative, photo=photo, fit=fit, threads=threads,
+            report=say,
         )
         reduced = chosen.samples
         say(f"chosen: {reduced.shape[1]} x {reduced.shape[0]}, error {255 * chosen.error:.2f} of 255")

@@ -35,6 +35,10 @@ Grey32 = npt.NDArray[np.float32]
 
 MAX_ERROR = 8 / 255
 MAX_SEEN_ERROR = 4 / 255  # of what a drawing at a size shows
+#: Of a photo whose detail, what a drawing shows of it less its means over so many times what that blurs, is fainter
+#: than this (RMS), as much less: in a faint one the same error hides more.
+FAINT, _AROUND = 28 / 255, 8
+_LEAST_PART = 0.5  # of MAX_SEEN_ERROR
 SEEN_PT = 1.0  # σ of the blur: hatching shows nothing finer
 # Smaller regions are specks that no stroke can show: 4 x 4 pixels of 512 x 512, however finely the photo is resolved.
 LEAST_REGION, LEAST_REGION_PX = 1 / 16384, 16  # of the picture, and at least so many pixels
@@ -84,6 +88,7 @@ def choose_grid(
     max_error: float | None = None,
     *,
     seen_at: float | None = None,
+    relative: bool = False,
     photo: Grey32 | None = None,
     fit: str = "lsq",
     threads: int | None = None,
@@ -95,6 +100,7 @@ def choose_grid(
         samples: (h, w) clean samples, 0 … 1.
         edges: in the frame of the image.
         max_error: RMS, grey 0 … 1; MAX_ERROR unless given, with seen_at MAX_SEEN_ERROR.
+        relative: as much less for faint photos, down to half.
         seen_at: the width on paper, points, whose drawing is to show no more than that; None for every pixel.
         photo: what to compare with (and to fit to); the samples where None.
         fit: as of `reduce`.
@@ -107,14 +113,16 @@ def choose_grid(
     """
     height, width = samples.shape
     seen = samples if photo is None else photo
-    if max_error is None:
-        max_error = MAX_ERROR if seen_at is None else MAX_SEEN_ERROR
     shown = 0.0 if seen_at is None else SEEN_PT * seen.shape[1] / seen_at
     exact = _View(seen, 0.0, POINT, shown)
     if photo is not None:
         exact = _View(seen, camera_blur(seen, edges), AREA, shown)
     enough = math.ceil(seen.size / max(1.0, shown / SEEN_PX) ** 2)
     quick = exact.smaller(min(VIEW_PX, enough if 3 * enough < seen.size else seen.size))  # else it does not pay
+    if max_error is None:
+        max_error = MAX_ERROR if seen_at is None else MAX_SEEN_ERROR
+    if relative:
+        max_error *= min(1.0, max(_detail(quick) / FAINT, _LEAST_PART))
     regions = _Regions(edges, *seen.shape)
     long = max(width, height)
     ladder = _ladder(-(-_LEAST_SIDE * long // min(width, height)), long)
@@ -165,6 +173,16 @@ def choose_grid(
             f"{255 * max_error:.2f} are allowed (--max-error)"
         )
     return chosen
+
+
+def _detail(view: _View) -> float:
+    """RMS, grey 0 … 1, of what a drawing shows of a photo besides its broad tones."""
+    from scipy.ndimage import gaussian_filter
+
+    fine, broad = (gaussian_filter(view.picture, view.seen * k, mode="nearest") for k in (1, _AROUND))
+    # summed as whole numbers: the order of the sum is not the same on every machine
+    squares = int((np.rint((fine - broad) * 65536).astype(np.int64) ** 2).sum())
+    return math.sqrt(squares / view.picture.size) / 65536
 
 
 def remaining_error(

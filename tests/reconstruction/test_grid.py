@@ -135,3 +135,16 @@ def test_a_small_drawing_needs_fewer_samples_and_shows_no_more_than_is_allowed()
         shown = ndimage.gaussian_filter(large - woven, sigma, mode="nearest")
         assert np.sqrt(np.mean(shown**2)) == pytest.approx(chosen.error, abs=2e-4)
     assert sides[0] == sides[1] < sides[2] / 2
+
+
+def test_a_faint_photo_is_allowed_less_error():
+    """A third of the contrast takes as fine a grid, or nearly, as the whole: the same error would hide more of it."""
+    y, x = np.mgrid[0:192, 0:256]
+    strong = (0.5 + 0.2 * np.sin(x / 2.5) * np.cos(y / 3.0)).astype(np.float32)
+    faint = ((strong - 0.5) / 3 + 0.5).astype(np.float32)
+    edges = EdgeList(256, 192)
+    sides = []
+    for photo, relative in ((strong, True), (faint, True), (faint, False)):
+        chosen = grid.choose_grid(photo, edges, seen_at=300.0, photo=photo, relative=relative)
+        sides.append(chosen.samples.shape[1])
+    assert sides[2] < sides[1] <= sides[0]
