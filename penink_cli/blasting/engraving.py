@@ -6,6 +6,11 @@ left between two, they close. So tone goes on evenly from paper to black. The li
 What is wrong there, as the eye sees it, is added to the tone that the next round's widths are made for.
 
 Lines end at strong edges, and free ends taper to a point.
+
+What a plate cut by hand has and this has not: a burin's line swells within a stroke's length for the form's sake, not
+for the tone alone; flesh, cloth and metal have their own spacing, and a second set crosses where the cutter wants a
+texture, with dots or flicks in its lozenges; lines of a dark are cut in two, a broad one and a hair line between; and
+where two fields of lines meet the cutter leaves no wedge, for he sets the new line at the last one's shoulder.
 """
 
 from __future__ import annotations
