@@ -69,18 +69,18 @@ def outline(
     clear = Clearance(width_pt, height_pt, CLEAR * choice.pen_pt)
     if ink is not None and len(ink):
         clear.take(_dots(ink, clear.cell))
-    parts: list[tuple[Floats, Floats]] = []
+    controls: list[Floats] = []
+    pens: list[float] = []
     for run in runs(edges, choice, around):
         points = _resampled(run.vertices, STEP)
         for part, ring in clear.free(points * scale, run.ring, SHORTEST * choice.pen_pt):
             tolerance = max(TOLERANCE, TOLERANCE_PT / pixel_pt)
-            control = _smooth(points[part], ring, tolerance) * scale
-            if choice.even:
-                parts.append((control, np.array([choice.pen_pt])))
-            else:
-                parts.append(_swelling(control, run.pressure * choice.pen_pt))
+            controls.append(_smooth(points[part], ring, tolerance) * scale)
+            pens.append(choice.pen_pt if choice.even else run.pressure * choice.pen_pt)
         clear.take(points * scale)
-    return _strokes(parts, width_pt, height_pt)
+    if choice.even:
+        return _strokes([(control, np.array([pen])) for control, pen in zip(controls, pens)], width_pt, height_pt)
+    return _strokes(_swelling(controls, pens), width_pt, height_pt)
 
 
 # ------------------------------------------------------------------- which edges
@@ -215,36 +215,52 @@ def _corners(points: Floats, ring: bool) -> Ints:
 # ------------------------------------------------------------------- the pen's pressure
 
 
-def _swelling(control: Floats, pen_pt: float) -> tuple[Floats, Floats]:
-    """The same curve in short pieces, each a segment, and the width of each: thin tips, a slow waver between."""
-    segments = np.stack([control[:-1:3], control[1::3], control[2::3], control[3::3]], axis=1)
+def _swelling(controls: list[Floats], pens: list[float]) -> list[tuple[Floats, Floats]]:
+    """Curves in short pieces, each a segment, and the width of each: thin tips, a slow waver between.
+
+    All are cut together, and wavered together; only what adds up along a curve is reckoned curve by curve.
+    """
+    if not controls:
+        return []
+    sizes = np.array([len(control) // 3 for control in controls])
+    segments = np.concatenate([
+        np.stack([control[:-1:3], control[1::3], control[2::3], control[3::3]], axis=1) for control in controls
+    ])  # fmt: skip
     rough = np.sqrt(((segments[:, 1:] - segments[:, :-1]) ** 2).sum(axis=2)).sum(axis=1)
     counts = np.maximum(1, np.ceil(rough / PIECE)).astype(np.int64)
     which = np.repeat(np.arange(len(counts)), counts)
-    k = np.arange(len(which)) - np.repeat(np.cumsum(counts) - counts, counts)
+    k = curves.ramp(counts)
     pieces = curves.blossom(segments[which], k / counts[which], (k + 1) / counts[which])
     lengths = rough[which] / counts[which]
-    middle = np.cumsum(lengths) - lengths / 2
-    total = float(lengths.sum())
-    ring = bool((np.abs(control[0] - control[-1]) < 1e-9).all())
-    t = np.ones(len(middle)) if ring else np.clip(np.minimum(middle, total - middle) / min(TAPER, total / 2), 0, 1)
+    ends = np.cumsum(counts)[np.cumsum(sizes) - 1].tolist()  # of each curve, one past its last piece
+    spans = [slice(i, j) for i, j in zip([0, *ends], ends)]
+    middle = np.concatenate([np.cumsum(lengths[span]) - lengths[span] / 2 for span in spans])
+    each = np.diff([0, *ends])
+    total = np.repeat([float(lengths[span].sum()) for span in spans], each)
+    first, last = (np.array([control[i] for control in controls]) for i in (0, -1))
+    ring = np.repeat((np.abs(first - last) < 1e-9).all(axis=1), each)
+    t = np.where(ring, 1.0, np.clip(np.minimum(middle, total - middle) / np.minimum(TAPER, total / 2), 0, 1))
     taper = THIN + (1 - THIN) * t * (2 - t)
-    width = pen_pt * taper * (1 + PRESSURE * _noise(middle / PRESSURE_LONG, control[0]))
-    width = np.maximum(np.round(width / pen_pt * 20) / 20, 0.3) * pen_pt
-    return pieces.reshape(-1, 2), width
+    pen = np.repeat(pens, each)
+    width = pen * taper * (1 + PRESSURE * _noise(middle / PRESSURE_LONG, np.repeat(first, each, axis=0)))
+    width = np.maximum(np.round(width / pen * 20) / 20, 0.3) * pen
+    return [(pieces[span].reshape(-1, 2), width[span]) for span in spans]
 
 
 def _noise(at: Floats, place: Floats) -> Floats:
-    """Smooth noise -1 … 1 along a line, from a hash of the place where it begins."""
-    x, y = (int(v) for v in np.floor(place * 16).tolist())
-    key = ((x * 73856093) ^ (y * 19349663)) & 0xFFFFFFFF
-    knots = np.arange(int(at[-1]) + 3, dtype=np.uint64) * np.uint64(2654435761) + np.uint64(key)
-    knots = (knots ^ (knots >> np.uint64(15))) * np.uint64(2246822519) & np.uint64(0xFFFFFFFF)
-    knots = (knots ^ (knots >> np.uint64(13))) * np.uint64(3266489917) & np.uint64(0xFFFFFFFF)
-    values = (knots >> np.uint64(8)).astype(np.float64) / (1 << 23) - 1
+    """Smooth noise -1 … 1 at places (n,) along lines, from hashes of the places (n, 2) where these begin."""
+    x, y = np.floor(place * 16).astype(np.int64).T
+    key = (((x * 73856093) ^ (y * 19349663)) & 0xFFFFFFFF).astype(np.uint64)
     i = np.floor(at).astype(np.int64)
-    t = at - i
-    return np.asarray(values[i] + (values[i + 1] - values[i]) * t * t * (3 - 2 * t))
+
+    def value(knot: Ints) -> Floats:
+        hashed = knot.astype(np.uint64) * np.uint64(2654435761) + key
+        hashed = (hashed ^ (hashed >> np.uint64(15))) * np.uint64(2246822519) & np.uint64(0xFFFFFFFF)
+        hashed = (hashed ^ (hashed >> np.uint64(13))) * np.uint64(3266489917) & np.uint64(0xFFFFFFFF)
+        return (hashed >> np.uint64(8)).astype(np.float64) / (1 << 23) - 1
+
+    before, after, t = value(i), value(i + 1), at - i
+    return np.asarray(before + (after - before) * t * t * (3 - 2 * t))
 
 
 def _strokes(parts: list[tuple[Floats, Floats]], width_pt: float, height_pt: float) -> Strokes:
