@@ -178,7 +178,7 @@ def _composed(
     noise = noise_level(grey)
     key = exposure.inks(choice.target)
     key *= key
-    broad, carved = relief.base(grey, key, pt, threads)
+    broad, carved = relief.base(grey, key, pt, threads, colours if colours.ndim == 3 else None)
     detail = grey - broad
     weight = _weight(grey, noise, pt, threads)
     upto = exposure.histogram(broad, weight if fade is None else weight * fade)

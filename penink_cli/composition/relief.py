@@ -26,6 +26,9 @@ _GAIN = np.array([round(((_USUAL) / (k / 512 + _OFFSET)) ** _POWER, 9) for k in 
 # What the exposure has lifted there beyond so much is taken back by so much, for relief in light tones is lost on the
 # pen, and detail is raised by so much more where so much was lifted.
 _LIFT, _TAKEN_BACK, _CARVED, _LIFTED = 0.12, 0.6, 0.35, 0.25
+# Skin by colour: red less blue in parts of red, green less blue in parts of red less blue, the least red; and the σ
+# over which it counts.
+_DULL, _ORANGE, _SHADE, _SKIN_PT = (0.15, 0.65), (0.15, 0.6), 0.2, 2.0
 # In relief lights above DOWN_TO come down by so much of what they exceed it by, and detail is so much deeper.
 _DOWN, _DOWN_TO, _DEEPER = 0.4, 0.6, 0.5
 # Where so much of the detail is finer than BROAD, in parts of what is not, it is grain, as grass is, and raised less.
@@ -33,8 +36,12 @@ _BROAD_PT, _GRAIN, _ALL_GRAIN, _GRAIN_LEFT = 1.2, 0.6, 0.95, 0.4
 _RELIEF, _RELIEF_RANGE, _RELIEF_INK, _LIGHT = 0.045, 0.05, 0.6, 0.60  # where detail is that strong, lights come down
 
 
-def base(grey: Picture, ink: float, pixels_per_pt: float, threads: int) -> tuple[Picture, Picture]:
+def base(
+    grey: Picture, ink: float, pixels_per_pt: float, threads: int, colours: Picture | None = None
+) -> tuple[Picture, Picture]:  # fmt: skip
     """Broad tones (h, w) of grey (h, w), sharp at strong edges, and how much each place is in relief, 0 … 1.
+
+    colours: (h, w, 3) red, green and blue, if there are any: what may be skin by its colour is in no relief.
 
     ink: how much the picture is to take, in parts of the usual; with less of it there is less for relief.
     """
@@ -46,6 +53,9 @@ def base(grey: Picture, ink: float, pixels_per_pt: float, threads: int) -> tuple
     mean = blurred(small, sigma, threads)
     variance: Picture = np.maximum(blurred(small * small, sigma, threads) - mean * mean, 0)
     relief = _in_relief(small, pixels_per_pt * w / width, threads)
+    if colours is not None:
+        skin = _skin(shrunk(colours, w, h, threads=threads))
+        relief *= 1 - blurred(skin, _SKIN_PT * pixels_per_pt * w / width, threads)
     flat = np.float32(_FLAT) + np.float32((_EDGES - _FLAT) * min(ink, 1.0)) * relief
     kept: Picture = variance / (variance + flat * flat)
     rest = mean - kept * mean
@@ -65,6 +75,16 @@ def _in_relief(grey: Picture, pt: float, threads: int) -> Picture:
     root *= root
     share: Picture = np.clip((root * root - np.float32(_LEAST)) / np.float32(_FULL - _LEAST), 0, 1)
     return share * np.clip((_skew(grey, pt, threads) - np.float32(_SKIN)) * np.float32(1 / (_METAL - _SKIN)), 0, 1)
+
+
+def _skin(colours: Picture) -> Picture:
+    """Which places of colours (h, w, 3) may be skin, 1 or 0: of whatever shade, it is a dull orange."""
+    red, green, blue = (colours[..., k] for k in range(3))
+    chroma = red - blue
+    dull = (chroma > np.float32(_DULL[0]) * red) & (chroma < np.float32(_DULL[1]) * red)
+    hue = green - blue
+    orange = (hue > np.float32(_ORANGE[0]) * chroma) & (hue < np.float32(_ORANGE[1]) * chroma)
+    return (dull & orange & (red > np.float32(_SHADE))).astype(np.float32)
 
 
 def _skew(grey: Picture, pt: float, threads: int) -> Picture:
