@@ -110,10 +110,10 @@ def _telling(points: EdgePoints, chains: Chains, high: float, min_length: float,
     """The chains that tell something: steep enough somewhere, long enough, and no texture.
 
     In texture (grass, fur, noise) every ridge of the gradient has others as steep around it, and
-    the ridges are short or meander. So a chain's steepness is taken in relation to the mean
-    steepness around it, and it counts the more the farther the chain goes, and much more where it
-    stands alone, as letters do, which cannot go far. A short chain between two
-    outlines cannot go far either, and they are steep around it: less than half as much is asked of it.
+    ridges are short or meander. So a chain's steepness is divided by the mean steepness around it.
+    It counts the more the farther the chain goes. It counts much more where the chain stands alone:
+    letters do, and cannot go far. A short chain between two outlines cannot go far either, and the
+    outlines around it are steep. Less than half as much is asked of it.
     """
     if not len(chains):
         return chains

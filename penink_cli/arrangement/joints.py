@@ -1,4 +1,4 @@
-"""Chains' loose ends joined to what they stop short of."""
+"""Loose ends of chains, joined to the edges that they stop short of."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""Corners and junctions put where the picture shows them: what the edges would look like against the photo.
+"""Corners and junctions put where the picture shows them: the edges are rendered and compared with the photo.
 
-Blur rounds corners. Near junctions the gradient belongs to two edges at once, so that chains end there in bevels,
-stubs and bends. Each such place is looked at through a window:
+Blur rounds corners. Near junctions the gradient belongs to two edges at once, and chains end in bevels, stubs and
+bends. Each such place is looked at through a window:
 
 1. The edges part the window into regions. These are rendered, each in the grey that suits it best, through the photo's
    own blur (`_compiled/window`).

@@ -51,9 +51,9 @@ def simplify(planar: Planar, tolerance: float, width: int, height: int) -> None:
     """Replace the arrangement's paths by segments within tolerance (pixels) of them.
 
     Nodes stay where they are while paths are divided. A shortcut that would touch another edge is
-    not taken: the path is then divided further, at worst down to its own segments. In the end all
-    vertices but open ends and those on the frame settle between the points that the segments stand for:
-    on a curve, segments through points of it would all lie on its inner side.
+    not taken. The path is then divided further, at worst down to its own segments. In the end
+    vertices move to between the points that their segments stand for, but for open ends and those on
+    the frame: on a curve, segments through its points would all lie on its inner side.
     """
     vertices, ends = np.asarray(planar.vertices), np.asarray(planar.ends)
     path, segment, offset = paths(ends, np.asarray(planar.live)[: len(ends)].astype(bool), len(vertices))

@@ -1,4 +1,4 @@
-"""Noise averaged along chains: the position of one edge point is told by its neighbours too."""
+"""Noise averaged along chains: neighbours tell the position of an edge point too."""
 
 from __future__ import annotations
 
@@ -31,8 +31,8 @@ def position_error(points: EdgePoints, noise: float, sigma: float, blur: float) 
 def smooth(position: Floats, chains: Chains, error: Floats) -> Floats:
     """Positions (n, 2) with those of each chain on a smooth curve, as smooth as their errors (n,) ask for.
 
-    How smooth the things in the picture are is told by the picture: the curves are as stiff as they can be
-    without moving points by more than their errors explain (the discrepancy principle).
+    The picture tells how smooth its things are. Curves are as stiff as they can be without moving points
+    by more than their errors explain (the discrepancy principle).
     """
     if not len(chains):
         return position
@@ -62,8 +62,8 @@ def unbend(points: EdgePoints, chains: Chains, blur: float) -> Floats:
     """Positions (n, 2) of all edge points with what blur has shifted on curves undone.
 
     Under a Gaussian of standard deviation s, the steepest place on the rim of a disc of radius R
-    lies s²/2R inside the rim; so each point of a chain moves against its curvature by that much.
-    At a corner, where the curvature is the blur's own, this gives back a part of its point.
+    lies s²/2R inside the rim. So each point of a chain moves against its curvature by that much.
+    At a corner the curvature is the blur's own, and this gives back a part of the corner's point.
     """
     position = points.position.copy()
     if not len(chains):

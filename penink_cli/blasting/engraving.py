@@ -35,8 +35,8 @@ ROUNDS, CORRECTION = 6, 0.7
 REACH = (-0.3, 1.3)
 #: Tone from which on lines close up.
 MOST = 0.97
-#: Dashes and the gaps between them: length, so far as the shortest and longest stretch of line that holds one of each
-#: allow; the least gap; below this tone there are no dashes.
+#: The length of a dash and of a gap; the shortest and the longest stretch of line that holds one of each, which have
+#: precedence; the least gap; the tone below which there are no dashes.
 DASH_PT, GAP_PT, PERIOD_PT, LONGEST_PERIOD_PT, LEAST_GAP_PT, LEAST_TONE = 3.0, 5.0, 12.0, 40.0, 0.7, 0.004
 #: Whether a line breaks up is decided by the mean over so many samples each way; not where it is so many times as dark.
 CALM, SURELY = 5, 1.6
@@ -44,8 +44,8 @@ CALM, SURELY = 5, 1.6
 CHUNK = 1 << 16
 #: Knots are about so far apart, points; lines are sampled this many times as finely.
 KNOT_PT = 2.0
-#: Free ends taper to this width over so many points, or a share of a short stroke, but the less the darker it is from
-#: this width on, in parts of the lines' distance: among dark lines a point leaves a speck of white.
+#: Free ends taper to this width over so many points, or over a share of a short stroke. From the last of these on, in
+#: parts of the lines' distance, wider strokes taper less: among dark lines a point leaves a speck of white.
 TIP_PT, TAPER_PT, TAPER_SHARE, BLUNT = 0.05, 6.0, 0.4, 0.25
 #: Where a line goes on after a gap, points are no longer than so many times the gap.
 TAPER_GAP = 1.2

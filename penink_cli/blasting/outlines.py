@@ -1,9 +1,9 @@
 """Outline strokes (section 3): chains of discontinuity edges as smooth strokes of the pen.
 
-Edges are followed as a pen would, straight on at junctions; runs that are strong and long enough are
-chosen, the most telling first; a run that comes too close to ink already there is left out, so that
-double edges, small prints and layers that share an outline do not clog; what remains is
-fitted with curves, which break at corners only.
+Edges are followed as a pen would, straight on at junctions. Runs that are strong and long enough are
+chosen, the most telling first. A run that comes too close to ink already there is left out: double
+edges, small prints and layers that share an outline would clog. What remains is fitted with curves,
+which break at corners only.
 """
 
 from __future__ import annotations

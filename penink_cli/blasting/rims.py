@@ -1,7 +1,8 @@
 """Lines along borders, within the dark side: along the frame, and along strong edges.
 
-Lines that meet a border at an angle end in points or in round ends, and what is left white between them makes a saw of
-it. A line within the border, as wide as is dark, fills that; so an engraver cuts the outline of what is dark.
+Lines that meet a border at an angle end in points or in round ends. The white left between them makes a saw of the
+border. A line within the border, as wide as the tone is dark, fills that. So an engraver cuts the outline of what is
+dark.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ FRAME_PT, EDGE_PT = 0.4, 0.42
 FRAME, EDGE = (2 * FRAME_PT, 0.6, 1.0), (2 * EDGE_PT, 0.35, 0.65)
 #: An edge has one on its darker side, where that is darker than the other by so much.
 DARKER = 0.2
-#: A line along an edge has more samples: what is darker for less is what lies beyond the other side of a thin thing.
+#: A line along an edge has more samples than this: a shorter stretch is darker for what lies beyond a thin thing.
 SHORTEST = 6
 #: Distance of a line's samples.
 STEP_PT = 1.0

@@ -7,15 +7,15 @@ so they draw the same strokes.
 A table consists of screens, a word from halftoning: each has an angle, a tile of its own in the
 directions along (u) and across (v) that angle, and strokes with thresholds. Hatching is a screen of
 *lines* for each layer. A line is as long as the tile and has one threshold for all of it, so light tones
-are long lines and not scattered dashes; it is laid as strokes of a hand's length that bow and tilt a
+are long lines and not scattered dashes. It is laid as strokes of a hand's length that bow and tilt a
 little. Lines enter in the order of the reversed bits of their number, so that every prefix is spread
 evenly. Any other texture is one screen at angle 0 whose strokes are those of its tile.
 
-A texture that grows with the picture has one screen of strokes that are moved apart as much as the picture is larger,
-`at_size`, and their thresholds fall as the tile's area grows beside their length; screens of lines follow them.
+A texture that grows with the picture has one screen of strokes that are moved apart as much as the picture is larger
+(`at_size`). Their thresholds fall as the tile's area grows beside their length. Screens of lines follow them.
 
-Thresholds are meant for one effective width of pen (what the device paints, its gain included), `PEN_PT`:
-a pen or a device that cannot paint so fine gets the pen and the tile magnified together.
+Thresholds are meant for one effective width of pen, `PEN_PT`: what the device paints, its gain included. A pen
+or a device that cannot paint so fine gets the pen and the tile magnified together.
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
 """The threshold rule: each stroke of a table is drawn wherever the tone exceeds its threshold.
 
-It needs no coverage buffer, so a printer and a web page can follow it too; given the same table, the
-same tone and the same edges, they and this module draw the same strokes. One feedback pass: the ink
-that a first pass would lay is compared with the tone in blocks of 9 pt, and the difference, smoothed,
-is added to the tone of the second.
+It needs no coverage buffer, so a printer and a web page can follow it too. Of the same table, the same
+tone and the same edges they and this module draw the same strokes. There are two passes. The ink that
+the first would lay is compared with the tone in blocks of 9 pt. The difference, smoothed, is added to
+the tone of the second.
 """
 
 from __future__ import annotations

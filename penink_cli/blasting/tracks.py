@@ -31,8 +31,8 @@ SHORTEST_PT = 2.0
 #: Lines come as near to the frame as those of such a pen do, and to an edge as those of this one, for they narrow
 #: before it.
 FRAME_PEN_PT, END_PT = 1.15, 0.3
-#: So near to an edge the tone is that of a place so far from it on the same side, for it is blurred across the edge;
-#: save where another edge is nearer than such a part.
+#: The tone is blurred across edges. Nearer to one than this, tone is read this far from it, on the same side. Not so
+#: where another edge is nearer than such a part of that: a thing as thin has no tone of its own.
 CLEAR_PT, THIN = 1.5, 0.6
 #: Lines along a field are moved so many times by such a part of how much further they are from one neighbour.
 EVENINGS, EVENED = 5, 0.18

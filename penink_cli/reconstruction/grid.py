@@ -1,13 +1,12 @@
 """The smallest grid that still serves: the paper's open question of the appropriate reduction factor.
 
-A grid serves if its samples, reconstructed and seen through the camera, differ from the photo by no
-more than a given error, and if every region that edges enclose holds a sample. Where it is known how wide the drawing
-will be, only that part of the difference counts which a drawing of that width can show: what is left of it when it is
-blurred by a point on paper. The error falls as
-the grid grows, which halving the interval exploits; regions do not behave so, and are tried in turn.
+A grid serves under two conditions. Its samples, reconstructed and seen through the camera, differ from the photo by no
+more than a given error. And every region that edges enclose holds a sample. Where it is known how wide the drawing will
+be, only the difference counts that a drawing of that width can show: it is blurred by a point on paper first. The error
+falls as the grid grows, so the interval can be halved. Regions do not behave so, and sides are tried in turn.
 
-Of a large photo a smaller view is searched: to try one grid at 12 megapixels takes 20 s of processor, and a view of
-one tells as much of a grid of a hundred samples a side. The grid found is then judged by the photo itself.
+A large photo is searched in a smaller view. One try at 12 megapixels takes 20 s of processor. A view of one megapixel
+tells as much of a grid of a hundred samples a side. The grid that is found is then judged by the photo itself.
 """
 
 from __future__ import annotations
@@ -49,7 +48,7 @@ _RUNG = 50  # the error is tried of grids that differ by a sample a side, or by 
 # Of the side by which the error falls, where only one is known; and that of what is seen, which a grid of this spacing
 # (points on paper) is about right for.
 _POWER, _SEEN_POWER, _SEEN_SPACING_PT = 0.6, 2.0, 3.0
-_FINER = 1.03  # how much finer the grid is at the next try, where the photo itself finds a grid too coarse
+_FINER = 1.03  # times as fine is the next grid, where the photo itself finds one too coarse
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,8 +1,8 @@
-"""Which chains of edges are worth their bytes: what each saves of the error that a drawing shows, by what it costs.
+"""Which chains of edges are worth their bytes: those that save more of a drawing's error than they cost.
 
-A picture is reconstructed twice from a grid as fine as a drawing of a width needs, with all edges and with none. Where
-edges are near, the difference of the squared errors is what they save, and each place is the nearest chain's. A chain
-whose saving is less than so many squared grey levels a bit is dropped. Where there is no picture, strong and long
+A picture is reconstructed twice from a grid as fine as a drawing of a width needs: with all edges and with none. Near
+edges the difference of the squared errors is what edges save. The saving at each place belongs to the nearest chain. A
+chain that saves less than so many squared grey levels a bit is dropped. Where there is no picture, strong and long
 chains stay.
 """
 
