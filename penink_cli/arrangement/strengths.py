@@ -1,9 +1,9 @@
 """How strong each edge is: the grey step across it, measured between what lies on its two sides.
 
 The slope at an edge's points tells it too, but at junctions, on thin lines and where the blur varies it is off by more
-than .02 of grey on four edges of ten. Measured so, on 1.3 to 2 of a hundred, as many as stand at junctions where the
-truth itself is not one number. Under four levels of noise and 1.5 pixels of blur it is 12, and another draw of the noise
-moves 23. A longer reach would average more noise out on scenes of planes, and reads other things on photographs
+than .02 of grey on four edges of ten. Measured so, it is on 1.3 to 2 of a hundred. As many stand at junctions where the
+truth itself is not one number. Under four levels of noise and 1.5 pixels of blur 12 are off, and another draw of the
+noise moves 23. A longer reach averages more noise out on scenes of planes, but reads other things on photographs
 (`python -m tests.benchmarks.edges strengths reaches`).
 """
 
