@@ -8,7 +8,7 @@ from penink_cli.outputs.registry import of_illustrations
 COMPOSED_DPI = 288.0  # as `compose` has it
 POSTER_DPI = 1152.0  # pixels an inch that an illustration is made from: those of a drawing four times as wide
 # Squared grey levels a bit that a chain of edges of an archive saves; where --max-bytes makes it coarser afterwards.
-WORTH, RICH_WORTH = 120.0, 40.0
+WORTH, RICH_WORTH = 160.0, 40.0
 FIELD_SIDE = 48  # samples of directions along the longer side of an archive
 
 

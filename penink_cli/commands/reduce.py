@@ -37,7 +37,7 @@ from penink_cli.options.inputs import (
     "--max-error",
     type=Finite(above=0, most=255),
     metavar="E",
-    help="RMS difference from the photo, grey levels of 255.  [default: 8, with --seen-at 4]",
+    help="RMS difference from the photo, grey levels of 255.  [default: 8, with --seen-at 4.5]",
 )
 @click.option(
     "--seen-at",

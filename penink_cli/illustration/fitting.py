@@ -20,7 +20,7 @@ from penink_cli.ground.model import Directions, EdgeList, GreyImage, Illustratio
 #: Pixels to a sample of the picture that coarser grids are compared with.
 FINE = 3
 #: Grey levels of 255: the error of an archive that is not limited, the least and the most that are tried.
-USUAL, LEAST, MOST = 4.0, 1.0, 96.0
+USUAL, LEAST, MOST = 4.5, 1.0, 96.0
 _TRIES = 7
 _LEAST_FIELD = 12
 

@@ -33,7 +33,7 @@ from penink_cli.reconstruction.shrinking import shrunk
 Grey32 = npt.NDArray[np.float32]
 
 MAX_ERROR = 8 / 255
-MAX_SEEN_ERROR = 4 / 255  # of what a drawing at a size shows
+MAX_SEEN_ERROR = 4.5 / 255  # of what a drawing at a size shows
 #: Of a photo whose detail, what a drawing shows of it less its means over so many times what that blurs, is fainter
 #: than this (RMS), as much less: in a faint one the same error hides more.
 FAINT, _AROUND = 28 / 255, 8
