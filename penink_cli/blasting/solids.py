@@ -15,7 +15,7 @@ import numpy as np
 from penink_cli.blasting import bordered, marks
 from penink_cli.blasting.light import LightThings
 from penink_cli.blasting.sheet import Cells, resample
-from penink_cli.composition.filters import blurred
+from penink_cli.composition.filters import Picture, blurred
 from penink_cli.ground.masks import labelled, near
 from penink_cli.ground.model import Floats, Strokes
 
@@ -59,25 +59,26 @@ def solids(
     if fine > 1:
         h, w = round(h * fine), round(w * fine)
         tone = resample(tone, h, w)
+    tones: Picture = tone.astype(np.float32)  # of single precision: the whole sheet is looked at several times
     px = w / width_pt
     fall = FALLS_PT * px
-    smooth = blurred(tone.astype(np.float32), SMOOTH_PT * px, 1).astype(np.float64)
+    smooth = blurred(tones, SMOOTH_PT * px, 1)
     if everywhere:
         smooth = _without_grain(smooth, px)
     core = smooth > black
     falls = near(smooth >= LIGHT, fall, strictly=True) & near(~core, fall, strictly=True)
     # how much darker a place is than what black begins with there, half way up or down where it does
-    darker = np.where(smooth > marks.LEVEL, np.maximum(tone, smooth), tone)  # smoothed outside, it would reach out
-    value = np.where(falls, darker - marks.LEVEL, smooth - black) + marks.LEVEL
+    darker = np.where(smooth > marks.LEVEL, np.maximum(tones, smooth), tones)  # smoothed outside, it would reach out
+    value = np.asarray(np.where(falls, darker - marks.LEVEL, smooth - black) + marks.LEVEL, np.float32)
     if light:
         close = resample(light.within(FALLS_PT).astype(np.float64), h, w) > 0
-        value = np.where(close & falls, tone, value)  # smoothed, it would be smaller
+        value = np.where(close & falls, tones, value)  # smoothed, it would be smaller
     if light and not everywhere:
         value = np.where(resample(light.within(BESIDE_PT).astype(np.float64), h, w) > 0.5, value, 0.0)
     if everywhere:
-        deep = blurred(smooth.astype(np.float32), WIDE_PT * px, 1) >= AROUND  # dark all around
+        deep = blurred(smooth, WIDE_PT * px, 1) >= AROUND  # dark all around
         blots, flecks = _blots(smooth, core, deep, black, px), _flecks(value, smooth, deep, px)
-        value = np.where(flecks, np.nextafter(marks.LEVEL, 1), value)
+        value = np.where(flecks, np.nextafter(np.float32(marks.LEVEL), np.float32(1)), value)
     part, boxes = labelled(value > marks.LEVEL)
     count = len(boxes) + 1
     rows, columns = np.arange(h) * ink.shape[0] // h, np.arange(w) * ink.shape[1] // w
@@ -91,25 +92,27 @@ def solids(
     chains: list[Floats] = []
     widths: list[float] = []
     bordered.fill(
-        np.where(mine, np.clip(value, 0, 1), 0.0), np.array([width_pt / w, height_pt / h]),
+        np.where(mine, np.clip(value, 0, 1), 0.0).astype(np.float64), np.array([width_pt / w, height_pt / h]),
         PEN_PT if pen_pt is None else pen_pt, gain_pt, chains, widths, pen_pt is not None,
     )  # fmt: skip
     return Strokes.of(width_pt, height_pt, chains, widths)
 
 
-def _without_grain(tone: Floats, px: float) -> Floats:
+def _without_grain(tone: Picture, px: float) -> Picture:
     """The tone (h, w), in the dark as it is around but for what differs more than grain; px: pixels in a point.
 
     Beside light things it stays as it is: they have borders of their own.
     """
     dark = ~near(tone >= LIGHT, FALLS_PT * px)
-    share = blurred(dark.astype(np.float32), WIDE_PT * px, 1).astype(np.float64)
-    around = blurred((tone * dark).astype(np.float32), WIDE_PT * px, 1) / np.maximum(share, 1e-6)
-    differs = tone - around
-    return np.where(dark, around + np.sign(differs) * np.maximum(np.abs(differs) - NOISE, 0.0), tone)
+    around = blurred(tone * dark, WIDE_PT * px, 1)
+    around /= np.maximum(blurred(dark.astype(np.float32), WIDE_PT * px, 1), 1e-6)
+    rest = tone - around
+    rest -= np.clip(rest, -NOISE, NOISE)
+    around += rest
+    return np.where(dark, around, tone)
 
 
-def _blots(tone: Floats, core: marks.Mask, deep: marks.Mask, black: float, px: float) -> marks.Mask:
+def _blots(tone: Picture, core: marks.Mask, deep: marks.Mask, black: float, px: float) -> marks.Mask:
     """The black in the dark that is too little of it to be filled, (h, w).
 
     core: where the tone exceeds `black`; deep: where it is dark all around.
@@ -123,7 +126,7 @@ def _blots(tone: Floats, core: marks.Mask, deep: marks.Mask, black: float, px: f
     return np.asarray(core & little & deep)
 
 
-def _flecks(value: Floats, tone: Floats, deep: marks.Mask, px: float) -> marks.Mask:
+def _flecks(value: Picture, tone: Picture, deep: marks.Mask, px: float) -> marks.Mask:
     """Small dark holes in the black, which is where value exceeds the level, (h, w)."""
     hole, boxes = labelled((value <= marks.LEVEL) & deep)
     little = np.bincount(hole[hole > 0], minlength=len(boxes) + 1) < FLECK_PT2 * px * px
