@@ -32,9 +32,10 @@ WIDE_PT, NOISE = 3.0, 0.04
 #: The least area that is filled, square points; hatching draws the rest.
 LEAST_PT2 = 3.0
 #: Where the tone around is at least AROUND, black of less than BLOT_PT2 is a blot in the hatching, and hatching of less
-#: than FLECK_PT2 a fleck in the black. Nor is a dark thing filled here and there: of what is at most NEARLY less dark
-#: and hangs together at least SHARE is black, or all of it is hatched.
-AROUND, BLOT_PT2, FLECK_PT2 = 0.8, 40.0, 25.0
+#: than FLECK_PT2 a fleck in the black, as is less than BEAD_PT2 of anything that is rather dark than light. Nor is a
+#: dark thing filled here and there: of what is at most NEARLY less dark and hangs together at least SHARE is black, or
+#: all of it is hatched.
+AROUND, BLOT_PT2, FLECK_PT2, BEAD_PT2 = 0.8, 40.0, 25.0, 5.0
 NEARLY, SHARE = 0.04, 0.25
 #: The pen that fills. It is fine because rows may lie as far as its width from a border that runs along them.
 PEN_PT = 0.35
@@ -77,7 +78,7 @@ def solids(
         value = np.where(resample(light.within(BESIDE_PT).astype(np.float64), h, w) > 0.5, value, 0.0)
     if everywhere:
         deep = blurred(smooth, WIDE_PT * px, 1) >= AROUND  # dark all around
-        blots, flecks = _blots(smooth, core, deep, black, px), _flecks(value, smooth, deep, px)
+        blots, flecks = _blots(smooth, core, deep, black, px), _flecks(value, smooth, px)
         value = np.where(flecks, np.nextafter(np.float32(marks.LEVEL), np.float32(1)), value)
     part, boxes = labelled(value > marks.LEVEL)
     count = len(boxes) + 1
@@ -126,10 +127,16 @@ def _blots(tone: Picture, core: marks.Mask, deep: marks.Mask, black: float, px: 
     return np.asarray(core & little & deep)
 
 
-def _flecks(value: Picture, tone: Picture, deep: marks.Mask, px: float) -> marks.Mask:
-    """Small dark holes in the black, which is where value exceeds the level, (h, w)."""
-    hole, boxes = labelled((value <= marks.LEVEL) & deep)
-    little = np.bincount(hole[hole > 0], minlength=len(boxes) + 1) < FLECK_PT2 * px * px
-    little[0] = False
-    little[hole[tone < AROUND]] = False
-    return np.asarray(little[hole])
+def _flecks(value: Picture, tone: Picture, px: float) -> marks.Mask:
+    """Small dark holes in the black, which is where value exceeds the level, (h, w).
+
+    Beside light things the black has its grain, so that the smallest are filled however dark: they would be beads
+    along its border, as hatching has no room in them.
+    """
+    hole, boxes = labelled(value <= marks.LEVEL)
+    size, count = np.bincount(hole[hole > 0], minlength=len(boxes) + 1), len(boxes) + 1
+    lightest = [np.bincount(hole[(hole > 0) & (tone < least)], minlength=count) == 0 for least in (AROUND, marks.LEVEL)]
+    little = [size < area * px * px for area in (FLECK_PT2, BEAD_PT2)]
+    fleck = (lightest[0] & little[0]) | (lightest[1] & little[1])
+    fleck[0] = False
+    return np.asarray(fleck[hole])

@@ -151,6 +151,13 @@ def test_grain_makes_neither_blots_in_hatching_nor_flecks_in_black():
     assert _filled(np.clip(0.99 + grain, 0, 1)).mean() > 0.99
 
 
+def test_grain_makes_no_beads_along_the_border_of_black():
+    tone = np.ones((2 * SIDE, 2 * SIDE))
+    tone[:, :SIDE] = 0
+    tone[10::8, SIDE + 3 : SIDE + 5] = tone[11::8, SIDE + 3 : SIDE + 5] = 0.65  # a pixel's square of grain, not light
+    assert _filled(tone)[:, 4 * SIDE + 8 :].mean() > 0.995
+
+
 def test_a_fold_in_dark_cloth_is_filled_and_a_small_black_thing_on_grey():
     x = np.arange(2 * SIDE)[None, :] * np.ones((2 * SIDE, 1))
     fold = np.abs(x - SIDE) < 6
