@@ -15,7 +15,6 @@ import io
 import subprocess
 import sys
 import tempfile
-from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -34,7 +33,7 @@ from penink_cli.measuring.tone import wanted as as_wanted
 from penink_cli.options.styles import shipped
 from penink_cli.outputs import pdf, postscript, svg
 from penink_cli.outputs.page import lay_out
-from penink_cli.travel.order import ordered
+from penink_cli.travel.order import ordered_each
 from samples.photographs import NAMES
 
 INCHES, DPI = 6, 150
@@ -153,7 +152,7 @@ def swelling(folder):
         for part in (drawn, wide):
             for module, options in ((postscript, {}), (postscript, {"compress": True}), (svg, {}), (pdf, {})):
                 out = io.BytesIO()
-                near = {"order": partial(ordered, improve=False)} if module is postscript else {}
+                near = {"order": ordered_each} if module is postscript else {}
                 module.write(out, [part], lay_out([part]), **options, **near)
                 row.append(len(out.getvalue()))
         knots = len(wide.at_knots) or knots

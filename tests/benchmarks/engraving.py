@@ -16,7 +16,6 @@ import subprocess
 import sys
 import tempfile
 import time
-from functools import partial
 from itertools import pairwise
 from pathlib import Path
 
@@ -31,7 +30,7 @@ from penink_cli.options.textures import find_texture
 from penink_cli.outputs import pdf, postscript, svg
 from penink_cli.outputs.page import lay_out
 from penink_cli.outputs.raster import cover
-from penink_cli.travel.order import ordered
+from penink_cli.travel.order import ordered_each
 from tests.benchmarks.form import analytic
 from tests.blasting import measures
 from tests.outputs.rendering import difference, ghostscript, pixels
@@ -137,7 +136,7 @@ def browser(path: Path, shape: tuple[int, ...]) -> Floats:
 def sizes_and_renderings() -> None:
     """PostScript of at most 40 bytes a knot, 14 compressed; renderings within .5 %, pdftoppm's by its own rule."""
     strokes = engraved(photograph("chelsea"), 4, 600, form("chelsea"))
-    page, near = lay_out([strokes]), partial(ordered, improve=False)
+    page, near = lay_out([strokes]), ordered_each
     ours = np.concatenate(list(cover.bands([strokes], page, 300, 255))).astype(float)
     with tempfile.TemporaryDirectory() as folder:
         at = Path(folder)

@@ -10,7 +10,7 @@ import io
 import subprocess
 import sys
 import time
-from functools import cache, partial
+from functools import cache
 
 import numpy as np
 
@@ -23,7 +23,7 @@ from penink_cli.ground.model import Directions, EdgeList, Floats, GreyImage, Str
 from penink_cli.options.textures import find_texture
 from penink_cli.outputs import postscript
 from penink_cli.outputs.page import lay_out
-from penink_cli.travel.order import ordered
+from penink_cli.travel.order import ordered_each
 from tests.benchmarks.blasting import picture
 from tests.blasting import measures
 
@@ -140,7 +140,7 @@ def bytes_() -> None:
         for texture, along in (("crosshatch", False), ("form", True)):
             strokes = draw(name, 6, texture, along)[1]
             out = io.BytesIO()
-            postscript.write(out, [strokes], lay_out([strokes]), order=partial(ordered, improve=False))
+            postscript.write(out, [strokes], lay_out([strokes]), order=ordered_each)
             sizes.append(len(out.getvalue()) / len(strokes))
         print(f"  {name:41} {sizes[0]:8.1f} {sizes[1]:6.1f}", flush=True)
 

@@ -22,7 +22,7 @@ def astray() -> tuple[np.ndarray, np.ndarray]:
 def test_a_drawing_has_the_tone_of_the_picture_and_not_what_is_astray():
     true, sharp = astray()
     texture = find_texture("crosshatch")
-    for given, most in ((None, 5.0), (true, 0.9)):
+    for given, most in ((None, 5.0), (true, 0.95)):  # black without its grain takes .02 of it
         drawn = blast(sharp, 216, 216, None, texture, true=given)
         rms, bias, _ = measures.tone_figures(drawn, true)
         assert rms < most and abs(bias) < 0.3

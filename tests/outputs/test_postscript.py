@@ -3,7 +3,6 @@
 import io
 import re
 import subprocess
-from functools import partial
 
 import numpy as np
 import pytest
@@ -12,7 +11,7 @@ from scipy.spatial import cKDTree
 from penink_cli.formats import strokes
 from penink_cli.outputs import postscript
 from penink_cli.outputs.page import ink_box, lay_out
-from penink_cli.travel.order import ordered
+from penink_cli.travel.order import ordered_each
 from tests.outputs.drawings import crosshatch, every_kind, strokes_of
 from tests.outputs.rendering import difference, ghostscript
 
@@ -22,7 +21,7 @@ KINDS = {"d": 0, "l": 2, "b": 4, "c": 6}
 def written(layers, paper=None, margin=0.0, landscape=False, **options):
     out = io.BytesIO()
     page = lay_out(layers, paper, margin, landscape)
-    postscript.write(out, layers, page, order=partial(ordered, improve=False), **options)
+    postscript.write(out, layers, page, order=ordered_each, **options)
     return out.getvalue()
 
 

@@ -24,7 +24,7 @@ def tone(shot):
     return 100 - shot.mean() / 2.55
 
 
-def oracle(drawing, dpi, fine=16):
+def oracle(drawing, dpi, fine=32):
     """Ink by distance: a point is inked if it is within half a pen of a curve, sampled finely."""
     w, h = cover.size(lay_out([drawing]), dpi)
     y, x = (np.mgrid[: h * fine, : w * fine] + 0.5) * (72 / dpi / fine)

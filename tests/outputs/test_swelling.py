@@ -4,7 +4,6 @@ import io
 import re
 import shutil
 import subprocess
-from functools import partial
 
 import numpy as np
 import pytest
@@ -15,7 +14,7 @@ from penink_cli.ground.model import Strokes
 from penink_cli.outputs import pdf, postscript, svg, swelling
 from penink_cli.outputs.page import lay_out
 from penink_cli.outputs.raster import cover
-from penink_cli.travel.order import ordered
+from penink_cli.travel.order import ordered_each
 from tests.outputs import drawings
 from tests.outputs.rendering import difference, ghostscript, pixels
 
@@ -64,7 +63,7 @@ def written(module, strokes, **options):
 
 
 def as_postscript(strokes, compress=False):
-    return written(postscript, strokes, compress=compress, order=partial(ordered, improve=False))
+    return written(postscript, strokes, compress=compress, order=ordered_each)
 
 
 def engraved(count=60, side=288.0, every=5.0):
