@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any
 
 import click
@@ -82,7 +81,7 @@ def lines(
     height = width * found.height / found.width
     check_sheet(width, height)
     choice = LineChoice(pen, even, density, per_inch2, min_rank, ruled or 0.0, loose or 0.0)
-    drawn = replace(line_strokes(found, width, height, choice), device_dpi=device_dpi)
+    drawn = line_strokes(found, width, height, choice, device_dpi=device_dpi)
     least = least_rank(width, height) if min_rank is None else min_rank
     reporter(verbose)(f"{len(drawn)} of {len(found)} lines; --min-rank {least:.2f}")
     with writing(output, binary=False) as out:

@@ -58,7 +58,7 @@ def lined(
     """Strokes of the telling lines that there is room for, as a strokes file holds them."""
     from penink_cli.lines.strokes import line_strokes
 
-    return replace(line_strokes(lines, width_pt, height_pt, choice), device_dpi=device_dpi).rounded()
+    return line_strokes(lines, width_pt, height_pt, choice, device_dpi=device_dpi).rounded()
 
 
 def blasted(

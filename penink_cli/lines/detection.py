@@ -63,6 +63,9 @@ FAR, NEAR, FAR_RANK = 0.7, 5.0, 0.45
 FIELD, GROUND = 8.0, 4.0
 #: A line that is within so many pixels of the frame all along is a scan's rim.
 RIM = 5.0
+#: On white a line is finer by FADED, from the tone LIGHT_GROUND on by less: no hatching is there that could be taken
+#: back for it, and on skin it would be a scar.
+FADED, LIGHT_GROUND = 0.8, 0.8
 #: The least rank of a line, and its least length, pixels.
 LEAST_RANK, SHORTEST = 0.5, 5.0
 #: Every so many steps, about a pixel each, a point is kept: a smooth curve through these strays by a fifth of a pixel.
@@ -116,6 +119,7 @@ def detect_lines(
         lit = _lines(light, shortest)
         found += [line.made_white() for line, ridge in zip(lit, _ridges(lit, picture)) if ridge >= RIDGE]
     found = [line for line in found if line.rank >= LEAST_RANK and not _at_rim(line, picture.shape)]
+    found = [line.faded(tone) for line in found]
     found.sort(key=lambda line: -line.rank)
     return _assembled(found, columns, rows, width, height)
 
@@ -131,6 +135,15 @@ class _Line:
 
     def made_white(self) -> _Line:
         return _Line(self.points, self.rank, True, self.breadth)
+
+    def faded(self, tone: Picture) -> _Line:
+        """The line, finer on light ground; tone: (h, w) of the ground. A spot stays, and so does a light line."""
+        if self.white or self.breadth:
+            return self
+        points = self.points.copy()
+        light: Floats = np.clip((LIGHT_GROUND - _at(tone, points[:, :2]).astype(np.float64)) / LIGHT_GROUND, 0, 1)
+        points[:, 2] *= 1 - FADED * light
+        return _Line(points, self.rank, self.white, self.breadth)
 
 
 def working_size(width: int, height: int) -> tuple[int, int]:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
 from penink_cli.geometry import curves
 from penink_cli.geometry.curves import lengths
 from penink_cli.ground import pens
+from penink_cli.ground.device import narrowed
 from penink_cli.ground.model import Floats, LineChoice, Lines, Strokes
 from penink_cli.lines.choice import chosen
 
@@ -24,9 +26,13 @@ RULED_PT, STRAIGHT_PT, BEYOND = 1.2, 9.0, 0.25
 STRAYS_PT, SECOND, APART = 16.0, 0.7, 4.0
 
 
-def line_strokes(lines: Lines, width_pt: float, height_pt: float, choice: LineChoice, white: bool = False) -> Strokes:
+def line_strokes(
+    lines: Lines, width_pt: float, height_pt: float, choice: LineChoice, white: bool = False,
+    device_dpi: float | None = None,
+) -> Strokes:  # fmt: skip
     """Strokes along the dark lines, or the white ones, the most telling first, on a sheet of width_pt × height_pt.
 
+    They are so much finer as a printer of that resolution paints them broader, unless one pen draws them all.
     A small print, whose pens are finer, has room for the lines of one that is as much larger.
     """
     by = 1.0 if choice.even else pens.part(width_pt)
@@ -53,7 +59,10 @@ def line_strokes(lines: Lines, width_pt: float, height_pt: float, choice: LineCh
             closed = ring and len(strays) == 1
             chains.append(curves.through(line, closed))
             widths.append(pen if choice.even else _widths(line, pressed, closed, pen))
-    return Strokes.of(width_pt, height_pt, chains, widths)
+    drawn = Strokes.of(width_pt, height_pt, chains, widths)
+    if device_dpi and not choice.even:
+        drawn = narrowed(drawn, device_dpi)
+    return replace(drawn, device_dpi=device_dpi)
 
 
 def _ruled(points: Floats, beyond: float) -> list[Floats]:

@@ -136,3 +136,17 @@ def test_a_line_answers_most_in_its_own_direction():
         d = 90 * np.array([np.cos(angle), np.sin(angle)])
         bank = oriented.responses(picture((tuple(100 - d), tuple(100 + d))), 0.75, 2.0, 1)
         assert int(np.argmax(bank[:, 98:102, 98:102].max(axis=(1, 2)))) == k
+
+
+def test_a_line_on_light_ground_is_finer():
+    grey = np.full((300, 400), 0.95)
+    grey[:, 200:] = 0.45
+    for x in (100, 300):  # as much darker than the ground
+        grey[40:260, x - 1 : x + 2] -= 0.3
+    lines = detect_lines(grey, white=False)
+    weight = {}
+    for i in range(len(lines)):
+        points = lines[i]
+        if np.ptp(points[:, 1]) > 150:
+            weight[round(float(points[:, 0].mean()), -2)] = lines.weight[lines.first[i] : lines.first[i + 1]].mean()
+    assert 0 < weight[100] < 0.6 * weight[300]

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from penink_cli.blasting.telling import with_room
+from penink_cli.ground.device import widened
 from penink_cli.ground.model import LineChoice, Lines
 from penink_cli.lines.choice import chosen, least_rank
 from penink_cli.lines.strokes import line_strokes
@@ -150,3 +151,14 @@ def test_a_list_made_for_a_size_draws_there_what_the_whole_list_does(choice, wid
     drawn, expected = (line_strokes(lines, width, 0.75 * width, choice) for lines in (left, whole))
     assert len(drawn) == len(expected) > 3
     assert np.array_equal(drawn.points, expected.points) and np.array_equal(drawn.widths, expected.widths)
+
+
+def test_a_line_is_as_broad_in_print_as_it_was_meant_to_be():
+    lines = listed((straight(100), 9), (np.array([[200.0, 200.0]]), 9, {"breadth": 4.0}))
+    meant, drawn = (line_strokes(lines, 432, 324, LineChoice(), device_dpi=dpi) for dpi in (None, 600.0))
+    assert drawn.device_dpi == 600 and meant.device_dpi is None
+    printed = widened(drawn, 600)
+    assert printed.widest == pytest.approx(meant.widest, abs=0.002)
+    assert drawn.widest.sum() < meant.widest.sum() - 0.2
+    even = [line_strokes(lines, 432, 324, LineChoice(even=True), device_dpi=dpi) for dpi in (None, 600.0)]
+    assert even[0].widest.tolist() == even[1].widest.tolist()  # a pen is as broad as it is
