@@ -24,8 +24,8 @@ def tone(shot):
     return 100 - shot.mean() / 2.55
 
 
-def oracle(drawing, dpi, fine=32):
-    """Ink by distance: a point is inked if it is within half a pen of a curve, sampled finely."""
+def oracle(drawing, dpi, fine=16, more=0.0):
+    """Ink by distance: a point is inked if it is within half a pen, and more, of a curve, sampled finely."""
     w, h = cover.size(lay_out([drawing]), dpi)
     y, x = (np.mgrid[: h * fine, : w * fine] + 0.5) * (72 / dpi / fine)
     inked = np.zeros(x.shape, bool)
@@ -38,7 +38,7 @@ def oracle(drawing, dpi, fine=32):
         ]
         pens = np.concatenate([(1 - t) * a + t * b for a, b in pairwise(widths)])[:, 0] if pieces else widths
         for (px, py), pen in zip(np.concatenate(pieces) if pieces else points, pens):
-            inked |= (x - px) ** 2 + (y - py) ** 2 <= pen * pen / 4
+            inked |= (x - px) ** 2 + (y - py) ** 2 <= (pen / 2 + more) ** 2
     return 255 * (1 - inked.reshape(h, fine, w, fine).mean(axis=(1, 3)))
 
 
@@ -63,9 +63,10 @@ def test_against_the_slow_way(chains, pen, end):
     drawing = strokes_of(chains, pen, 12, 9)
     if end is not None:  # the strokes swell
         drawing = drawing.swelling(np.where(np.isin(np.arange(len(drawing.at_knots)), drawing.knots), pen, end))
-    ours, slow = picture([drawing], 72).astype(float), oracle(drawing, 72)
-    assert np.abs(ours - slow).max() <= 14  # of 255: the oracle's curves are beads on a string
-    assert abs(ours.mean() - slow.mean()) <= 1.5
+    ours = picture([drawing], 72).astype(float)
+    light, dark = (oracle(drawing, 72, more=more) for more in (-1e-9, 1e-9))  # a row of points on a side is in or out
+    assert (ours - light).max() <= 14 and (dark - ours).max() <= 14  # of 255: the oracle's curves are beads on a string
+    assert dark.mean() - 1.5 <= ours.mean() <= light.mean() + 1.5
 
 
 def test_overlaps_count_once():
