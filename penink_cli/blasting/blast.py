@@ -88,8 +88,7 @@ def left_over(
     """Tone (h, w) less the ink of the strokes on such a sheet, as the eye sees both: positive is too light."""
     sheet = Sheet(tone, width_pt, height_pt, 72.0 / device_dpi if device_dpi else 0.0, threads or 1)
     hatching.draw_first(sheet, strokes)
-    error = sheet.spread(sheet.error()).astype(np.float64)
-    return 2 * resample((error + 1) / 2, *tone.shape) - 1  # resample keeps to 0 … 1
+    return resample(sheet.spread(sheet.error()).astype(np.float64), *tone.shape, least=-1.0)
 
 
 def too_dark(tone: Floats, darkest: float) -> float:

@@ -45,7 +45,6 @@ def restored(sharp: Floats, true: Floats, width_pt: float, height_pt: float, thr
     free = np.clip(np.minimum(there, 1 - there) / np.float32(ENDS), 0, 1)
     for _ in range(PASSES):
         wanting += free * low_pass(wanted - there - wanting) / weight
-    # resample keeps to 0 … 1
-    more = 2 * resample((wanting.astype(np.float64) + 1) / 2, *sharp.shape) - 1
+    more = resample(wanting.astype(np.float64), *sharp.shape, least=-1.0)
     free_here = np.clip(np.minimum(sharp, 1 - sharp) / ENDS, 0.0, 1.0)
     return np.asarray(np.clip(sharp + free_here * more, 0.0, 1.0))

@@ -301,12 +301,15 @@ def look_up(values: npt.NDArray[np.floating], points: Floats, width: float, heig
     return np.asarray(top * (1 - v) + bottom * v)
 
 
-def resample(tone: Floats, rows: int, columns: int) -> Floats:
-    """`tone` stretched to rows × columns: the mean over each cell where it shrinks, bilinear where it grows."""
-    return _resample_rows(_resample_rows(tone, rows).T, columns).T.copy()
+def resample(tone: Floats, rows: int, columns: int, *, least: float = 0.0) -> Floats:
+    """`tone` stretched to rows × columns: the mean over each cell where it shrinks, bilinear where it grows.
+
+    least: of its values, which are 1 at the most; -1 for differences of tones. Rounding does not pass either.
+    """
+    return _resample_rows(_resample_rows(tone, rows, least).T, columns, least).T.copy()
 
 
-def _resample_rows(tone: Floats, n: int) -> Floats:
+def _resample_rows(tone: Floats, n: int, least: float) -> Floats:
     h = len(tone)
     if n == h:
         return tone
@@ -321,4 +324,4 @@ def _resample_rows(tone: Floats, n: int) -> Floats:
     lo = np.minimum(bounds.astype(np.int64), h - 1)
     part = (bounds - lo)[:, None]
     edge = total[lo] * (1 - part) + total[lo + 1] * part
-    return np.asarray(np.clip(np.diff(edge, axis=0) * (n / h), 0.0, 1.0), np.float64)
+    return np.asarray(np.clip(np.diff(edge, axis=0) * (n / h), least, 1.0), np.float64)

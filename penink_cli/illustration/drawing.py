@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from penink_cli.ground.model import EdgeList, Floats, GreyImage, LineChoice, Lines, OutlineChoice, Strokes, Texture
+from penink_cli.ground.model import EdgeList, Floats, GreyImage, LineChoice, Lines, OutlineChoice, Strokes
 
 PIXELS_PER_PT = 2.0  # of the grey that is blasted: half the distance between the closest strokes
 
@@ -59,20 +59,6 @@ def lined(
     from penink_cli.lines.strokes import line_strokes
 
     return line_strokes(lines, width_pt, height_pt, choice, device_dpi=device_dpi).rounded()
-
-
-def blasted(
-    grey: GreyImage, width_pt: float, edges: EdgeList | None, texture: Texture, *, seed: int, pen_pt: float | None,
-    gamma: float, device_dpi: float | None, ink: Strokes | None, threads: int | None,
-) -> Strokes:  # fmt: skip
-    """The hatching of a grey image, as a strokes file holds it."""
-    from penink_cli.blasting.blast import blast
-
-    rows, columns = grey.values.shape
-    return blast(
-        tone_curve(grey, gamma), width_pt, width_pt * rows / columns, edges, texture, seed=seed, pen_pt=pen_pt,
-        device_dpi=device_dpi, outlines=ink, threads=threads,
-    ).rounded()  # fmt: skip
 
 
 def outline_strokes(

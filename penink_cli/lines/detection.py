@@ -119,9 +119,8 @@ def detect_lines(
         lit = _lines(light, shortest)
         found += [line.made_white() for line, ridge in zip(lit, _ridges(lit, picture)) if ridge >= RIDGE]
     found = [line for line in found if line.rank >= LEAST_RANK and not _at_rim(line, picture.shape)]
-    found = [line.faded(tone) for line in found]
     found.sort(key=lambda line: -line.rank)
-    return _assembled(found, columns, rows, width, height)
+    return _assembled(found, tone, columns, rows, width, height)
 
 
 @dataclass(frozen=True)
@@ -135,15 +134,6 @@ class _Line:
 
     def made_white(self) -> _Line:
         return _Line(self.points, self.rank, True, self.breadth)
-
-    def faded(self, tone: Picture) -> _Line:
-        """The line, finer on light ground; tone: (h, w) of the ground. A spot stays, and so does a light line."""
-        if self.white or self.breadth:
-            return self
-        points = self.points.copy()
-        light: Floats = np.clip((LIGHT_GROUND - _at(tone, points[:, :2]).astype(np.float64)) / LIGHT_GROUND, 0, 1)
-        points[:, 2] *= 1 - FADED * light
-        return _Line(points, self.rank, self.white, self.breadth)
 
 
 def working_size(width: int, height: int) -> tuple[int, int]:
@@ -343,14 +333,17 @@ def _thinned(points: Floats) -> Floats:
     return points[[(len(points) - 1) * k // (count - 1) for k in range(count)]]
 
 
-def _assembled(found: list[_Line], columns: int, rows: int, width: int, height: int) -> Lines:
-    """The lines in pixels of the photo."""
+def _assembled(found: list[_Line], tone: Picture, columns: int, rows: int, width: int, height: int) -> Lines:
+    """The lines in pixels of the photo, dark ones finer on light ground; tone: (height, width) of the ground."""
     parts = [_thinned(line.points) for line in found]
     first = np.zeros(len(parts) + 1, np.int64)
     np.cumsum([len(part) for part in parts], out=first[1:])
     points = np.concatenate(parts) if parts else np.zeros((0, 3))
     scale = np.array([columns / width, rows / height])
     at = np.clip((points[:, :2] + 0.5) * scale, 0, (columns, rows))
+    light = np.clip((LIGHT_GROUND - _at(tone, points[:, :2]).astype(np.float64)) / LIGHT_GROUND, 0, 1)
+    dark_line = np.array([not line.white and not line.breadth for line in found], np.bool_)
+    points[:, 2] *= 1 - FADED * light * np.repeat(dark_line, np.diff(first))
     return Lines(
         columns, rows, at, first, np.clip(points[:, 2] / FULL, 0, 1), np.array([line.rank for line in found]),
         np.array([line.white for line in found], np.bool_),
