@@ -2,13 +2,15 @@
 
 A stage reads the golden files of the stages before it, so that only the stage that changed fails.
 ``pytest tests/test_golden.py --rewrite-golden`` writes them anew, in the chain's order: read the diff
-before committing it. Grey images are kept as plain PGM, one row of pixels a line.
+before committing it. Grey images are kept as plain PGM, one row of pixels a line; so are the three of a
+direction field, one after another.
 """
 
 from __future__ import annotations
 
 import os
 import re
+import shutil
 
 import numpy as np
 import pytest
@@ -17,42 +19,63 @@ from tests.conftest import ROOT
 
 GOLDEN = ROOT / "tests/golden"
 
-# What makes each file, in tests/golden; the first two read the photo from standard input.
+# What makes each file, in tests/golden; those that name no picture read a photo from standard input.
 STAGES = {
     "edges.json": "detect-edges",
+    "directions.pgm": "detect-directions -e edges.json --size 12",
+    "lines.json": "detect-lines",
+    "composed.pgm": "compose --width 0.5in",
     "samples.pgm": "extract-samples -e edges.json",
     "reduced.pgm": "reduce -e edges.json --factor 2 samples.pgm",
     "enlarged.pgm": "enlarge -e edges.json --scale 3 reduced.pgm",
     "crosshatch.strokes.jsonl": "blast -t crosshatch -e edges.json --width 0.5in enlarged.pgm",
     "stipple.strokes.jsonl": "blast -t stipple -e edges.json --width 0.25in enlarged.pgm",
+    "form.strokes.jsonl": "blast -t form -e edges.json --directions directions.pgm --width 0.5in enlarged.pgm",
     "outline.strokes.jsonl": "outline --width 0.5in edges.json",
+    "lines.strokes.jsonl": "lines --width 0.5in lines.json",
+    "rendered.strokes.jsonl": "render --width 0.5in disc.illustration.json",
     "drawing.ps": "to-ps crosshatch.strokes.jsonl outline.strokes.jsonl",
     "drawing.svg": "to-svg crosshatch.strokes.jsonl outline.strokes.jsonl",
     "drawing.pgm": "to-pgm --dpi 72 crosshatch.strokes.jsonl outline.strokes.jsonl",
 }
+GIVEN = {"disc.illustration.json"}  # written by hand
 
 
-def listing(values: np.ndarray) -> bytes:
-    """Grey values of 0 … 255, (h, w), as plain PGM."""
+def listing(values: np.ndarray, maxval: int = 255) -> bytes:
+    """Grey values of 0 … maxval, (h, w), as plain PGM."""
     h, w = values.shape
-    return "".join([f"P2\n{w} {h}\n255\n", *(" ".join(f"{v:3}" for v in row) + "\n" for row in values)]).encode()
+    return "".join([f"P2\n{w} {h}\n{maxval}\n", *(" ".join(f"{v:3}" for v in row) + "\n" for row in values)]).encode()
 
 
 def readable(output: bytes) -> bytes:
-    """A raw PGM as its listing, anything else as it is."""
-    if not output.startswith(b"P5"):
-        return output
-    header = re.match(rb"P5\n(\d+) (\d+)\n255\n", output)
-    assert header, output[:20]
-    w, h = map(int, header.groups())
-    return listing(np.frombuffer(output[header.end() :], np.uint8).reshape(h, w))
+    """Raw PGM images as their listings, anything else as it is."""
+    listings = b""
+    while output.startswith(b"P5"):
+        header = re.match(rb"P5\n(\d+) (\d+)\n(\d+)\n", output)
+        assert header, output[:20]
+        w, h, maxval = map(int, header.groups())
+        end = header.end() + w * h
+        listings += listing(np.frombuffer(output[header.end() : end], np.uint8).reshape(h, w), maxval)
+        output = output[end:]
+    return listings + output
 
 
-def photo() -> bytes:
-    """A dark disc on a gradient."""
+def raw(listings: bytes) -> bytes:
+    """Listings as the raw PGM images that they are of."""
+    images = b""
+    for text in listings.split(b"P2\n")[1:]:
+        size, maxval, values = text.split(b"\n", 2)
+        images += b"P5\n%s\n%s\n%s" % (size, maxval, bytes(map(int, values.split())))
+    return images
+
+
+def photo(scratched: bool = False) -> bytes:
+    """A dark disc on a gradient; and if it is scratched, a line aslant across all of it, whose middle is black."""
     i, j = np.mgrid[:16, :24]
     disc = (10 * j - 117) ** 2 + (10 * i - 73) ** 2 < 52**2
-    return listing(np.where(disc, 60, 120 + 5 * j))
+    values = np.where(disc, 60, 120 + 5 * j)
+    scratch = np.maximum(0, 5 - abs(3 * j - 2 * i - 30)) * 20
+    return listing(np.maximum(0, values - scratch) if scratched else values)
 
 
 def compare(name: str, found: bytes) -> None:
@@ -60,9 +83,18 @@ def compare(name: str, found: bytes) -> None:
     assert found.decode().split("\n") == (GOLDEN / name).read_bytes().decode().split("\n")
 
 
+@pytest.fixture
+def files(tmp_path):
+    """The golden files, with the direction field as the stages read it: of raw images."""
+    shutil.copytree(GOLDEN, tmp_path, dirs_exist_ok=True)
+    if (field := tmp_path / "directions.pgm").exists():
+        field.write_bytes(raw(field.read_bytes()))
+    return tmp_path
+
+
 @pytest.mark.parametrize("name", STAGES)
-def test_a_stage_writes_its_golden_file(name, penink, request):
-    done = penink(*STAGES[name].split(), input=photo(), cwd=GOLDEN)
+def test_a_stage_writes_its_golden_file(name, penink, request, files):
+    done = penink(*STAGES[name].split(), input=photo(scratched=name == "lines.json"), cwd=files)
     assert done.returncode == 0 and not done.stderr, done.stderr
     found = readable(done.stdout)
     assert len(found) < 20_000, "too long to be read"
@@ -88,6 +120,6 @@ def test_another_hand_fails_the_comparison(penink):
 
 
 def test_there_is_no_golden_file_that_no_stage_writes():
-    assert {path.name for path in GOLDEN.iterdir()} == set(STAGES)
+    assert {path.name for path in GOLDEN.iterdir()} == set(STAGES) | GIVEN
     with pytest.raises(AssertionError, match="--rewrite-golden"):
         compare("missing", b"")
