@@ -1,7 +1,7 @@
 """Samples, directions and texts in as few bytes as they can be: members of a packed illustration.
 
 Each begins with four bytes that say what it is, then whole numbers (seven bits a byte, low ones
-first, the eighth set on all but the last), then one stretch of the adaptive code of `_compiled/compact`:
+first, the eighth set on all but the last), then one stretch of the adaptive code of `_compiled/coder`:
 
 =========  =========================================  ==========================================
 ``PIs1``   width, height, maxval                      samples, row by row, by their neighbours
@@ -27,7 +27,9 @@ import numpy as np
 import numpy.typing as npt
 
 from penink_cli.formats._compiled import cuts as _cuts
-from penink_cli.formats._compiled.compact import FITTED_LEVELS, FITTED_SAMPLES, Coder
+from penink_cli.formats._compiled import samples as _samples
+from penink_cli.formats._compiled.coder import Coder
+from penink_cli.formats._compiled.samples import FITTED_LEVELS, FITTED_SAMPLES
 from penink_cli.ground.errors import FormatError, LimitError
 from penink_cli.ground.model import Directions, EdgeList, Floats, GreyImage, Ints
 
@@ -40,9 +42,8 @@ SURE = 7  # the highest level of confidence
 BLOCK = 4  # samples along a side that share one
 MAX_FIELD = 1 << 20  # samples of a direction field
 MAX_GRID = 1 << 24  # points along a side
-# Decoding takes 0.6 µs a sample where all is paper (up to 4 where it is fitted, of which there are fewer), 8 µs a byte
-# of text and up to 25 µs a byte of code: with these
-# limits at most 10, 9 and some 20 seconds a member.
+# Decoding takes .04 µs a sample where all is paper (up to 2 where it is fitted, of which there are fewer), .3 µs a byte
+# of text and up to 3 µs a byte of code: with these limits some 2 seconds a member, 3 at most.
 MAX_SAMPLES = 1 << 24
 MAX_TEXT = 1 << 20
 MAX_CODE = 1 << 20
@@ -77,9 +78,9 @@ def samples_bytes(image: GreyImage, edges: EdgeList | None = None) -> bytes:
     beside = edges is not None and len(edges.edges) > 0
     values = np.ascontiguousarray(image.values, np.int32)
     if w * h <= FITTED_SAMPLES and image.maxval < FITTED_LEVELS:
-        coder.fitted(values, image.maxval, _hidden(edges, w, h))
+        _samples.fitted(coder, values, image.maxval, _hidden(edges, w, h))
         return SAMPLES_FITTED + written_numbers(w, h, image.maxval, int(beside)) + _finished(coder)
-    coder.samples(values, image.maxval, _hidden(edges, w, h) if beside else None)
+    _samples.by_neighbours(coder, values, image.maxval, _hidden(edges, w, h) if beside else None)
     return (SAMPLES_BESIDE if beside else SAMPLES) + written_numbers(w, h, image.maxval) + _finished(coder)
 
 
@@ -102,9 +103,9 @@ def samples_from(data: bytes, max_pixels: int, edges: EdgeList | None = None) ->
     values = np.zeros((height, width), np.int32)
     coder = Coder(rest)
     if fitted:
-        coder.fitted(values, maxval, _hidden(edges if beside else None, width, height))
+        _samples.fitted(coder, values, maxval, _hidden(edges if beside else None, width, height))
     else:
-        coder.samples(values, maxval, _hidden(edges, width, height) if beside else None)
+        _samples.by_neighbours(coder, values, maxval, _hidden(edges, width, height) if beside else None)
     _check_end(coder)
     return _grey(values, maxval)
 
@@ -165,7 +166,7 @@ def directions_bytes(field: Directions) -> bytes:
         nearest[i] = np.argmax(field.cos2[i, :, None] * angles[:, 0] + field.sin2[i, :, None] * angles[:, 1], axis=1)
     coder = Coder()
     _code_angles(coder, nearest, ANGLES)
-    coder.samples(_by_blocks(field.confidence), SURE)
+    _samples.by_neighbours(coder, _by_blocks(field.confidence), SURE)
     return DIRECTIONS + written_numbers(columns, rows) + _finished(coder)
 
 
@@ -181,7 +182,7 @@ def directions_from(data: bytes) -> Directions:
     nearest = np.zeros((rows, columns), np.int64)
     _code_angles(coder, nearest, count)
     levels = np.zeros((-(-rows // BLOCK), -(-columns // BLOCK)), np.int32)
-    coder.samples(levels, SURE)
+    _samples.by_neighbours(coder, levels, SURE)
     _check_end(coder)
     if not levels.any():
         raise FormatError("confidence is 0 everywhere")

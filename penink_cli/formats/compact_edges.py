@@ -18,7 +18,7 @@ from itertools import pairwise
 import numpy as np
 
 from penink_cli.formats import edge_list
-from penink_cli.formats._compiled.compact import Coder
+from penink_cli.formats._compiled.coder import Coder
 from penink_cli.formats.compact import MAX_GRID, _check_end, _finished, _header, written_numbers
 from penink_cli.geometry.trails import Trail, trails
 from penink_cli.ground.errors import FormatError

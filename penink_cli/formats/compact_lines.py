@@ -18,7 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from penink_cli.formats import lines as lines_format
-from penink_cli.formats._compiled.compact import Coder
+from penink_cli.formats._compiled.coder import Coder
 from penink_cli.formats.compact import MAX_GRID, _check_end, _finished, _header, written_numbers
 from penink_cli.geometry import curves
 from penink_cli.ground.errors import FormatError, LimitError

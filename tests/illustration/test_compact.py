@@ -10,7 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from penink_cli.formats import compact, compact_edges, compact_lines, parts
-from penink_cli.formats._compiled import compact as _compact
+from penink_cli.formats._compiled import coder as _coder
+from penink_cli.formats._compiled import samples as _samples
 from penink_cli.geometry import quantisation, validity
 from penink_cli.ground.errors import FormatError, LimitError, PeninkError
 from penink_cli.ground.model import Directions, EdgeList, GreyImage, Lines
@@ -310,13 +311,13 @@ def test_a_few_bytes_cannot_announce_more_than_is_allowed():
 def test_reading_stops_where_the_bytes_end():
     """Decoding what is announced after that would take minutes for sixteen million of either."""
     text = np.full(1 << 24, 7, np.uint8)
-    coder = _compact.Coder(b"few bytes")
+    coder = _coder.Coder(b"few bytes")
     coder.text(text)
     assert coder.overrun and (text[1 << 16 :] == 7).all()
     for shape in ((1 << 12, 1 << 12), (1, 1 << 24)):
         values = np.full(shape, 7, np.int32)
-        coder = _compact.Coder(b"few bytes")
-        coder.samples(values, 255)
+        coder = _coder.Coder(b"few bytes")
+        _samples.by_neighbours(coder, values, 255)
         assert coder.overrun and (values.ravel()[1 << 16 :] == 7).all()
     found = (ROOT / "tests/data/found/compact/text-of-232314-bytes-in-7").read_bytes()
     with pytest.raises(FormatError, match=r"^truncated or damaged$"):
