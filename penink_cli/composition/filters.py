@@ -43,7 +43,7 @@ def blurred(values: Picture, sigma: float, threads: int = 1) -> Picture:
     """A Gaussian low-pass of sigma pixels; a wide one nearly so, through a smaller view."""
     height, width = values.shape
     factor = int(sigma / _KEPT)
-    if sigma > _COARSE and min(height, width) >= 4 * factor:
+    if sigma > _COARSE and factor > 1 and min(height, width) >= 4 * factor:
         across, down = -(-width // factor), -(-height // factor)
         step = width / across
         # means over areas and linear interpolation each have a variance of their own

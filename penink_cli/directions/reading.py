@@ -1,4 +1,4 @@
-"""Reading a direction field at the size at hand: plane by plane, by the same reconstruction as the grey is enlarged by.
+"""Reading a direction field at the size at hand, by the same reconstruction as the grey is enlarged by.
 
 The field is one function over the image frame, sharp across discontinuity edges, and reading it is taking its values
 at the output's centres: a small drawing and a poster find the same direction at the same place.
@@ -7,7 +7,6 @@ at the output's centres: a small drawing and a poster find the same direction at
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
 from penink_cli.ground.model import Directions, EdgeList
 from penink_cli.reconstruction.enlarge import Window, check_window, reconstruct
@@ -31,7 +30,7 @@ def at_size(
 
     edges: the arrangement of the picture, across which nothing is mixed; None for none.
     window: x, y, width, height of the pixels wanted, all unless given. No value depends on it, nor on threads.
-    confident: whether the confidence is wanted too, half as much work again; without it neighbours alone tell it.
+    confident: whether the confidence is wanted too; without it neighbours alone tell it.
     """
     x, y, width, height = check_window(window, columns, rows)
     h, w = directions.cos2.shape
@@ -40,19 +39,17 @@ def at_size(
     down, across = _odd(h, rows), _odd(w, columns)
     finer = x * across, y * down, width * across, height * down
 
-    def plane(samples: npt.NDArray[np.floating]) -> npt.NDArray[np.float64]:
-        found = reconstruct(
-            samples.astype(np.float64), edges, columns * across, rows * down, window=finer, threads=threads
-        )
-        return found[down // 2 :: down, across // 2 :: across]
-
-    cos2, sin2 = plane(directions.cos2), plane(directions.sin2)
+    planes = [directions.cos2, directions.sin2, directions.confidence][: 3 if confident else 2]
+    found = reconstruct(
+        np.array(planes, np.float64), edges, columns * across, rows * down, window=finer, threads=threads
+    )[:, down // 2 :: down, across // 2 :: across]
+    cos2, sin2 = found[:2]
     length = np.sqrt(cos2 * cos2 + sin2 * sin2)
     known = length > NOTHING
     divisor = np.where(known, length, 1.0)
     confidence = np.where(known, np.minimum(length, 1.0), 0.0)
     if confident:
-        confidence *= np.clip(plane(directions.confidence), 0, 1)
+        confidence *= np.clip(found[2], 0, 1)
     return Directions(
         np.where(known, cos2 / divisor, 1.0).astype(np.float32),
         np.where(known, sin2 / divisor, 0.0).astype(np.float32),

@@ -100,13 +100,15 @@ def bands(
     samples = image.values if maxval == image.maxval else image.values * np.float64(maxval) / image.maxval
     window = check_window(window, width, height)
     if not soften:
-        work = _plan(samples, edges, width, height, radius, kernel, window, single, stored, maxval)
-        yield from work.run(threading.count(threads), into)
+        work = _plan(samples[None], edges, width, height, radius, kernel, window, single, stored, maxval)
+        for rows in work.run(threading.count(threads), into):
+            yield rows[0]
         return
     half_width, half_height = -(-width // 2), -(-height // 2)
     inner = source_window(window, width, height, half_width, half_height)
-    work = _plan(samples, edges, half_width, half_height, radius, kernel, inner, single, np.dtype(np.float64), maxval)
-    halves = work.run(threading.count(threads))
+    real = np.dtype(np.float64)
+    work = _plan(samples[None], edges, half_width, half_height, radius, kernel, inner, single, real, maxval)
+    halves = (rows[0] for rows in work.run(threading.count(threads)))
     yield from soften_bands(halves, inner, half_width, half_height, window, width, height, maxval, stored)
 
 
@@ -121,11 +123,16 @@ def reconstruct(
     window: Window | None = None,
     threads: int | None = None,
 ) -> Floats:
-    """The same in floating point: (h, w) samples of any unit to (height, width), neither clamped nor rounded."""
+    """The same in floating point: (h, w) samples of any unit to (height, width), neither clamped nor rounded.
+
+    Planes of one picture, (p, h, w), become (p, height, width), and what hides samples is looked for once.
+    """
     samples = np.ascontiguousarray(samples, np.float64)
+    planes = samples if samples.ndim == 3 else samples[None]
     window = check_window(window, width, height)
-    work = _plan(samples, edges, width, height, radius, kernel, window, False, np.dtype(np.float64), 0)
-    return np.concatenate(list(work.run(threading.count(threads))))
+    work = _plan(planes, edges, width, height, radius, kernel, window, False, np.dtype(np.float64), 0)
+    whole = np.concatenate(list(work.run(threading.count(threads))), axis=1)
+    return whole if samples.ndim == 3 else whole[0]
 
 
 def check_window(window: Window | None, width: int, height: int) -> Window:
@@ -139,7 +146,7 @@ def check_window(window: Window | None, width: int, height: int) -> Window:
 
 
 def _plan(
-    samples: Rows,
+    planes: Rows,
     edges: EdgeList | None,
     width: int,
     height: int,
@@ -150,26 +157,26 @@ def _plan(
     stored: np.dtype[Any],
     maxval: int,
 ) -> _Enlargement | _Reduction:
-    h, w = samples.shape
+    _, h, w = planes.shape
     only_b = is_bspline(kernel)
     widening = max(1.0, w / width, h / height)
     paths = Paths(edges, w, h, reach(radius, widening))
     if widening > 1.0:
-        samples = samples.astype(np.float64, order="C")
-        return _Reduction(samples, paths, width, height, radius * widening, only_b, window, stored, maxval)
+        planes = planes.astype(np.float64, order="C")
+        return _Reduction(planes, paths, width, height, radius * widening, only_b, window, stored, maxval)
     left, top, across, down = window
     real = np.dtype(np.float32 if single else np.float64)
     x = axis(width, w, left, left + across)
     square = (height, h, top, down) == (width, w, left, across)
     y = x if square else axis(height, h, top, top + down)
-    return _Enlargement(samples.astype(real, order="C"), paths, x, y, radius, only_b, window, real, stored, maxval)
+    return _Enlargement(planes.astype(real, order="C"), paths, x, y, radius, only_b, window, real, stored, maxval)
 
 
 @dataclass(eq=False)
 class _Enlargement:
     """Scale 1 and above in both directions: the separable pass, and tiles of one cell where edges are near."""
 
-    samples: Rows
+    planes: Rows
     paths: Paths
     x: Axis
     y: Axis
@@ -181,7 +188,7 @@ class _Enlargement:
     maxval: int
 
     def run(self, threads: int, into: Rows | None = None) -> Iterator[Rows]:
-        """The rows, by bands of tiles."""
+        """The rows of all planes, (p, rows, columns), by bands of tiles."""
         x, y = self.x, self.y
         # Whole tiles may be more than the window: then bands are cut out of arrays of their own.
         self.into = into if (x.begin, y.begin, x.count, y.count) == self.window else None
@@ -215,12 +222,13 @@ class _Enlargement:
         first = y.taps.first[begin:end]
         source, last = int(first[0]), int(first[-1]) + 4
         expanded = np.empty((last - source, x.count + TILE), self.real)
+        count, h, _ = self.planes.shape
+        out = np.empty((count, end - begin, x.count), self.stored) if self.into is None else self.into[None, begin:end]
         separable = lanes.kernel("separable")
-        separable.expand(self.samples, source, x.taps.first, self.x_taps[self.only_b], expanded)
-        out = np.empty((end - begin, x.count), self.stored) if self.into is None else self.into[begin:end]
-        separable.combine(expanded, source, first, self.y_taps[self.only_b][begin:end], self.maxval, out)
+        for plane, rows in zip(self.planes, out):
+            separable.expand(plane, source, x.taps.first, self.x_taps[self.only_b], expanded)
+            separable.combine(expanded, source, first, self.y_taps[self.only_b][begin:end], self.maxval, rows)
         if not self.paths.empty:
-            h = len(self.samples)
             try:
                 worker = self.workers.pop()  # atomic, as giving it back is
             except IndexError:
@@ -228,7 +236,7 @@ class _Enlargement:
             finder, tile, scratch = worker
             finder.move(min(max(source, 0), h - 1), max(1, min(last, h)))
             _render.retouch(
-                tile, scratch, self.samples, self.where, self.offset, *self.x_taps, x.cell, x.first,
+                tile, scratch, self.planes, self.where, self.offset, *self.x_taps, x.cell, x.first,
                 y.taps.where[begin:end], self.y_taps[0][begin:end], self.y_taps[1][begin:end],
                 y.cell[a:b], y.first[a : b + 1] - y.first[a],
                 out,
@@ -238,7 +246,7 @@ class _Enlargement:
             return out
         left, top, width, height = self.window
         return out[
-            max(0, top - y.begin - begin) : top + height - y.begin - begin, left - x.begin : left - x.begin + width
+            :, max(0, top - y.begin - begin) : top + height - y.begin - begin, left - x.begin : left - x.begin + width
         ]
 
     def _worker(self) -> tuple[_search.Finder, _tile.Tile, _scratch.Scratch]:
@@ -254,7 +262,7 @@ class _Enlargement:
 class _Reduction:
     """Below scale 1 in some direction: point by point, with the kernels widened to band-limit."""
 
-    samples: Floats
+    planes: Floats
     paths: Paths
     width: int
     height: int
@@ -265,8 +273,8 @@ class _Reduction:
     maxval: int
 
     def run(self, threads: int, into: Rows | None = None) -> Iterator[Rows]:
-        """The rows, a few at a time."""
-        h, w = self.samples.shape
+        """The rows of all planes, a few at a time."""
+        _, h, w = self.planes.shape
         left, top, across, down = self.window
         self.x = taps(centres(self.width, w)[left : left + across], max(1.0, w / self.width))
         self.where = centres(self.height, h)[top : top + down]
@@ -276,15 +284,16 @@ class _Reduction:
 
     def band(self, begin: int, end: int) -> Rows:
         """Rows begin … end of the window."""
-        h = len(self.samples)
+        count, h, _ = self.planes.shape
         x, y = self.x, taps(self.where[begin:end], max(1.0, h / self.height))
         first, last = int(y.first[0]), int(y.first[-1]) + y.cubic.shape[1]
-        out = np.empty((end - begin, len(x.where)))
-        _weights.lattice(
-            self.paths.finder(rows=(min(max(first, 0), h - 1), max(1, min(last, h)))), self.samples,
-            x.where, x.first, x.cubic, x.bspline, y.where, y.first, y.cubic, y.bspline,
-            self.radius, self.only_b, np.empty(x.cubic.shape[1] * y.cubic.shape[1]), out,
-        )  # fmt: skip
+        out = np.empty((count, end - begin, len(x.where)))
+        for plane, rows in zip(self.planes, out):
+            _weights.lattice(
+                self.paths.finder(rows=(min(max(first, 0), h - 1), max(1, min(last, h)))), plane,
+                x.where, x.first, x.cubic, x.bspline, y.where, y.first, y.cubic, y.bspline,
+                self.radius, self.only_b, np.empty(x.cubic.shape[1] * y.cubic.shape[1]), rows,
+            )  # fmt: skip
         if self.stored == np.float64:
             return out
         return np.floor(np.clip(out, 0.0, self.maxval) + 0.5).astype(self.stored)

@@ -40,21 +40,15 @@ cdef void lay_out_rows(Scratch scratch, Tile tile, real* yc, real* yb) noexcept 
         scratch.known = 0
 
 
-cdef void lay_out(
-    Scratch scratch, Tile tile, real* samples, real* xc, real* xb, Py_ssize_t stride, real* ux
-) noexcept nogil:
-    """Lay ready the samples of a tile, and what belongs to its columns; what is beyond them belongs to the next."""
-    cdef Py_ssize_t i, j
-    cdef real* f
+cdef void lay_out(Scratch scratch, real* xc, real* xb, Py_ssize_t stride, real* ux) noexcept nogil:
+    """Lay ready what belongs to the columns of pixels of a tile; what is beyond them belongs to the next."""
+    cdef Py_ssize_t i
     cdef real* columns
     cdef real* kx
-    cdef real* values
     if real is float:
         kx = <float*>scratch.kx
-        values = <float*>scratch.values
     else:
         kx = <double*>scratch.kx
-        values = <double*>scratch.values
     for i in range(8):
         columns = xc + stride * i if i < 4 else xb + stride * (i - 4)
         if memcmp(kx + 8 * i, columns, 8 * sizeof(xc[0])) != 0:
@@ -63,6 +57,17 @@ cdef void lay_out(
     if memcmp(scratch.ux, ux, 8 * sizeof(xc[0])) != 0:
         memcpy(scratch.ux, ux, 8 * sizeof(xc[0]))
         scratch.known = 0
+
+
+cdef void lay_out_samples(Scratch scratch, Tile tile, real* samples) noexcept nogil:
+    """Lay ready the samples of a tile, those of one plane."""
+    cdef Py_ssize_t i, j
+    cdef real* f
+    cdef real* values
+    if real is float:
+        values = <float*>scratch.values
+    else:
+        values = <double*>scratch.values
     for j in range(4):
         f = samples + <Py_ssize_t>tile.row[j] * tile.scene.width
         if tile.column[3] == tile.column[0] + 3:
@@ -73,17 +78,18 @@ cdef void lay_out(
 
 
 def retouch(
-    Tile tile, Scratch scratch, real[:, ::1] samples, double[::1] x, real[::1] ux, real[:, ::1] xc, real[:, ::1] xb,
+    Tile tile, Scratch scratch, real[:, :, ::1] samples, double[::1] x, real[::1] ux, real[:, ::1] xc, real[:, ::1] xb,
     int[::1] x_cell, int[::1] x_begin, double[::1] y, real[:, ::1] yc, real[:, ::1] yb, int[::1] y_cell,
-    int[::1] y_begin, stored[:, ::1] out,
+    int[::1] y_begin, stored[:, :, ::1] out,
 ) -> None:
     """Reconstruct every tile that has an edge within the cells that its samples span.
 
+    samples: (p, h, w), planes of one picture: what hides a sample, and how much it counts, is alike in all.
     x: (n + 8,) positions of the columns, sample units; ux: the same relative to the cell and in units of the radius.
     xc, xb: (4, n + 8) taps. x_cell, x_begin: (t,), (t + 1,) the cell and the first column of each tile, left to right.
-    For y likewise, but (rows, 4) taps. out: (rows, n).
+    For y likewise, but (rows, 4) taps. out: (p, rows, n).
     """
-    cdef Py_ssize_t a, b, c
+    cdef Py_ssize_t a, b, c, k
     with nogil:
         for a in range(y_cell.shape[0]):
             c = y_begin[a]
@@ -96,9 +102,8 @@ def retouch(
                 tile.place(x_cell[b], &x[c], x_begin[b + 1] - x_begin[b])
                 if not tile.see():
                     continue
-                lay_out(
-                    scratch, tile, &samples[0, 0], &xc[0, c], &xb[0, c],
-                    xc.shape[1], &ux[c],
-                )  # fmt: skip
+                lay_out(scratch, &xc[0, c], &xb[0, c], xc.shape[1], &ux[c])
                 attenuate(scratch, tile)
-                scratch.paint(scratch, tile.shaded, tile.nx, tile.ny, &out[y_begin[a], c], out.shape[1])
+                for k in range(samples.shape[0]):
+                    lay_out_samples(scratch, tile, &samples[k, 0, 0])
+                    scratch.paint(scratch, tile.shaded, tile.nx, tile.ny, &out[k, y_begin[a], c], out.shape[2])
