@@ -197,7 +197,7 @@ class _Sides:
 
 def _weighed(bank: oriented.Bank, threads: int) -> _Sides:
     """Weigh a bank's responses by what is around, in their place; what they were."""
-    sides = [oriented.strongest(bank, sign, threads) for sign in (1.0, -1.0)]
+    sides = oriented.strongest(bank, threads)
     # a dot answers in every direction, a line in few
     factors = [
         np.clip((1 - mean / (most + np.float32(1e-6))) / np.float32(0.35), 0, 1).astype(np.float32)

@@ -79,13 +79,16 @@ def _square(x: Floats) -> Floats:
     return x * x
 
 
-def strongest(bank: Bank, sign: float, threads: int) -> tuple[Picture, Picture]:
-    """The greatest response of this sign in any direction (h, w), and the mean of those of all directions."""
+def strongest(bank: Bank, threads: int) -> tuple[tuple[Picture, Picture], tuple[Picture, Picture]]:
+    """The greatest response of dark lines in any direction (h, w), and the mean of those of all; then of light ones."""
     _, h, w = bank.shape
-    most, mean = np.empty((h, w), np.float32), np.empty((h, w), np.float32)
-    work = threading.ranges(lambda top, bottom: oriented.strongest(bank, sign, most, mean, top, bottom), h, _BAND)
-    threading.share(work, threads)
-    return most, mean
+    most, mean, light_most, light_mean = (np.empty((h, w), np.float32) for _ in range(4))
+
+    def work(top: int, bottom: int) -> None:
+        oriented.strongest(bank, most, mean, light_most, light_mean, top, bottom)
+
+    threading.share(threading.ranges(work, h, _BAND), threads)
+    return (most, mean), (light_most, light_mean)
 
 
 def weigh(bank: Bank, dark: tuple[Picture, Picture], light: tuple[Picture, Picture], threads: int) -> None:

@@ -11,26 +11,10 @@ into its rounded value and its rounding error, added up as a non-overlapping exp
 sign of the sum. Bound and expansions: Shewchuk, Adaptive Precision Floating-Point Arithmetic, 1997.
 """
 
-from libc.math cimport fabs
-
-cdef double FILTER = 3.3306690738754716e-16  # (3 + 16 u) u with u = 2⁻⁵³
 cdef double SPLITTER = 134217729.0  # 2²⁷ + 1
 
 
-cdef int orient(double ax, double ay, double bx, double by, double cx, double cy) noexcept nogil:
-    """Exact sign of (b − a) × (c − a): 1, −1 or 0."""
-    cdef double left = (bx - ax) * (cy - ay)
-    cdef double right = (by - ay) * (cx - ax)
-    cdef double area = left - right
-    cdef double bound = FILTER * (fabs(left) + fabs(right))
-    if area > bound:
-        return 1
-    if area < -bound:
-        return -1
-    return _exact(ax, ay, bx, by, cx, cy)
-
-
-cdef int _exact(double ax, double ay, double bx, double by, double cx, double cy) noexcept nogil:
+cdef int exactly(double ax, double ay, double bx, double by, double cx, double cy) noexcept nogil:
     """Sign of bx·cy − bx·ay − ax·cy − by·cx + by·ax + ay·cx, without rounding."""
     cdef double[12] terms
     cdef int n = 0

@@ -6,6 +6,18 @@ cdef extern from "taps.h" nogil:
     void penink_taps(
         const float* values, const Py_ssize_t* offset, const float* weight, Py_ssize_t n, float* out, Py_ssize_t width
     )
+    int best_lanes()
+    int lanes
+
+
+def take_lanes(int wanted) -> int:
+    """Use vectors of so many bytes, 16 or 32, or the most there are; which ones are used. No byte depends on it."""
+    global lanes
+    lanes = min(wanted, best_lanes())
+    return lanes
+
+
+take_lanes(32)
 
 
 def respond(
@@ -22,30 +34,32 @@ def respond(
             penink_taps(&padded[i, 0], &offset[0], &weight[0], weight.shape[0], &out[i, 0], out.shape[1])
 
 
-def strongest(const float[:, :, ::1] bank, float sign, float[:, ::1] most, float[:, ::1] mean,
-              Py_ssize_t top, Py_ssize_t bottom):
-    """The greatest of all directions' responses of this sign, and their mean, responses of the other sign being 0."""
+def strongest(const float[:, :, ::1] bank, float[:, ::1] most, float[:, ::1] mean, float[:, ::1] light_most,
+              float[:, ::1] light_mean, Py_ssize_t top, Py_ssize_t bottom):
+    """The greatest of all directions' responses, and their mean, those below 0 being 0; of those below 0 the same."""
     cdef Py_ssize_t i, q, k
     cdef Py_ssize_t n = bank.shape[0], w = bank.shape[2]
-    cdef float v
+    cdef float v, u
     cdef float part = <float>(1.0 / n)
     cdef float *m
     cdef float *s
+    cdef float *l
+    cdef float *t
     cdef const float *r
     with nogil:
         for i in range(top, bottom):
-            m = &most[i, 0]
-            s = &mean[i, 0]
+            m, s, l, t = &most[i, 0], &mean[i, 0], &light_most[i, 0], &light_mean[i, 0]
             for q in range(w):
-                m[q] = 0.0
-                s[q] = 0.0
+                m[q] = s[q] = l[q] = t[q] = 0.0
             for k in range(n):
                 r = &bank[k, i, 0]
                 for q in range(w):
-                    v = sign * r[q]
-                    v = v if v > 0.0 else <float>0.0
+                    v = r[q] if r[q] > 0.0 else <float>0.0
+                    u = -r[q] if r[q] < 0.0 else <float>0.0
                     m[q] = v if v > m[q] else m[q]
+                    l[q] = u if u > l[q] else l[q]
                     s[q] = s[q] + part * v
+                    t[q] = t[q] + part * u
 
 
 def weigh(float[:, :, ::1] bank, const float[:, ::1] factor, const float[:, ::1] less,

@@ -16,6 +16,7 @@ from libc.math cimport sqrt
 cdef enum:
     WEAK = 6  # steps that a line may go on below the lower threshold
     TAKEN = 3  # and along another
+    LOOK = 64  # responses that are looked at together, most of which are faint
 
 
 cdef inline float _own(float response, float sign) noexcept nogil:
@@ -57,13 +58,22 @@ cdef inline double _towards(
     return _at(&bank[k, 0, 0], sign, h, w, x, y) * (1.0 - d) + _at(&bank[(k + 1) % n, 0, 0], sign, h, w, x, y) * d
 
 
+cdef inline bint _reached(const float *responses, Py_ssize_t n, float sign, float high) noexcept nogil:
+    """Whether any of n responses reaches high."""
+    cdef Py_ssize_t q
+    cdef int reached = 0
+    for q in range(n):
+        reached |= sign * responses[q] >= high
+    return reached != 0
+
+
 def peaks(const float[:, :, ::1] bank, float sign, const double[:, ::1] unit, float high, int[:, ::1] out):
     """Count where a response reaches high and is the greatest among its neighbours across the line and in direction.
 
     unit: (8 n, 2) the unit vector of each quarter. out: (m, 3) the first m of them, as layer, row, column.
     """
     cdef Py_ssize_t n = bank.shape[0], h = bank.shape[1], w = bank.shape[2]
-    cdef Py_ssize_t k, i, j, found = 0
+    cdef Py_ssize_t k, i, j, left, right, found = 0
     cdef float c
     cdef double nx, ny
     cdef const float* here
@@ -74,17 +84,22 @@ def peaks(const float[:, :, ::1] bank, float sign, const double[:, ::1] unit, fl
             nx, ny = -unit[4 * k, 1], unit[4 * k, 0]
             for i in range(2, h - 2):
                 here, after, before = &bank[k, i, 0], &bank[(k + 1) % n, i, 0], &bank[(k + n - 1) % n, i, 0]
-                for j in range(2, w - 2):
-                    c = sign * here[j]
-                    if c < high or sign * after[j] > c or sign * before[j] >= c:
+                right = 2
+                while right < w - 2:
+                    left, right = right, min(right + LOOK, w - 2)
+                    if not _reached(here + left, right - left, sign, high):
                         continue
-                    if _at(&bank[k, 0, 0], sign, h, w, j + nx, i + ny) > c:
-                        continue
-                    if _at(&bank[k, 0, 0], sign, h, w, j - nx, i - ny) >= c:
-                        continue
-                    if found < out.shape[0]:
-                        out[found, 0], out[found, 1], out[found, 2] = <int>k, <int>i, <int>j
-                    found += 1
+                    for j in range(left, right):
+                        c = sign * here[j]
+                        if c < high or sign * after[j] > c or sign * before[j] >= c:
+                            continue
+                        if _at(&bank[k, 0, 0], sign, h, w, j + nx, i + ny) > c:
+                            continue
+                        if _at(&bank[k, 0, 0], sign, h, w, j - nx, i - ny) >= c:
+                            continue
+                        if found < out.shape[0]:
+                            out[found, 0], out[found, 1], out[found, 2] = <int>k, <int>i, <int>j
+                        found += 1
     return found
 
 
