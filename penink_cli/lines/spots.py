@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cache
 from itertools import pairwise
 
 import numpy as np
@@ -98,9 +99,8 @@ def _spot(sharp: Picture, picture: Picture, taken: np.ndarray, i: int, j: int, r
     r = math.ceil(2.8 * radius) + 1
     top, left = max(0, i - r), max(0, j - r)
     window = picture[top : i + r + 1, left : j + r + 1]
-    y, x = np.ogrid[top : top + window.shape[0], left : left + window.shape[1]]
-    away = (y - i) ** 2 + (x - j) ** 2
-    ring = np.sort(window[(away >= (2.0 * radius) ** 2) & (away <= (2.7 * radius) ** 2)])
+    rim = _rim(radius, r)[top - i + r :, left - j + r :][: window.shape[0], : window.shape[1]]
+    ring = np.sort(window[rim])
     if len(ring) < 8:
         return None
     core = float(picture[i - 1 : i + 2, j - 1 : j + 2].min())
@@ -108,7 +108,6 @@ def _spot(sharp: Picture, picture: Picture, taken: np.ndarray, i: int, j: int, r
     contrast = ground - core
     if contrast < CONTRAST:
         return None
-    rim = (away >= (2.0 * radius) ** 2) & (away <= (2.7 * radius) ** 2)
     bare = window < core + 0.5 * contrast
     if np.count_nonzero(bare & rim) > (ATTACHED if radius >= LEAST_ATTACHED else OPEN) * len(ring):
         return None
@@ -147,6 +146,14 @@ def _spot(sharp: Picture, picture: Picture, taken: np.ndarray, i: int, j: int, r
     ex, ey = (xx - yy + root, 2 * xy) if xx > yy else (2 * xy, yy - xx + root)
     size = 2 * (major - minor) / math.sqrt(ex * ex + ey * ey)
     return Spot(*middle, ex * size, ey * size, 4 * minor, contrast, crisp, dark)
+
+
+@cache
+def _rim(radius: float, r: int) -> np.ndarray:
+    """What surrounds a spot of that radius: a ring in a window of r pixels to each side."""
+    y, x = np.ogrid[-r : r + 1, -r : r + 1]
+    away = y * y + x * x
+    return (away >= (2.0 * radius) ** 2) & (away <= (2.7 * radius) ** 2)
 
 
 def _mean(values: np.ndarray) -> float:
