@@ -69,7 +69,7 @@ def traces(
         tracing.peaks(bank, sign, unit, high, seeds)
     seeds = seeds[:count]
     seeds = seeds[np.argsort(-sign * bank[seeds[:, 0], seeds[:, 1], seeds[:, 2]], kind="stable")]
-    used = np.zeros(bank.shape, np.uint8)
+    used = np.zeros(bank.shape[1:], np.uint32)
     there, back = np.empty((LONGEST, 4)), np.empty((LONGEST, 4))
     room, starts = np.empty((64 * LONGEST, 4)), np.empty(1 << 14, np.int64)
     parts: list[Floats] = []

@@ -9,6 +9,7 @@ import skimage.data
 from penink_cli.formats import lines as lines_format
 from penink_cli.ground.model import Directions, Lines
 from penink_cli.lines import oriented
+from penink_cli.lines._compiled import oriented as kernel
 from penink_cli.lines.detection import detect_lines
 from tests.formats.readers import written
 
@@ -127,6 +128,15 @@ def test_the_list_is_of_the_picture_and_not_of_its_pixels():
 def test_even_ground_answers_with_nothing_in_every_direction():
     bank = oriented.responses(np.full((20, 30), 0.7, np.float32), 0.75, 2.0, 1)
     assert bank.shape == (oriented.DIRECTIONS, 20, 30) and np.abs(bank).max() < 1e-6
+
+
+def test_wider_vectors_change_no_byte():
+    picture = np.random.default_rng(3).random((20, 91)).astype(np.float32)  # wide enough for all loops
+    banks = []
+    for lanes in (16, 32):
+        kernel.take_lanes(lanes)
+        banks.append(oriented.responses(picture, 0.75, 2.0, 1).tobytes())
+    assert banks[0] == banks[1]
 
 
 def test_a_line_answers_most_in_its_own_direction():

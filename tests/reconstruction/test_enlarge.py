@@ -278,6 +278,17 @@ def test_one_sample():
     assert (enlarge(image, edges, 1, 1, soften=True).values == 77).all()
 
 
+@pytest.mark.parametrize("size", [(40, 30), (5, 4)])
+def test_planes_of_one_picture_are_what_each_is_alone(size):
+    """Enlarged, and made smaller."""
+    planes = np.random.default_rng(2).random((3, 9, 11))
+    edges = edge_list(11, 9, [(1, 1), (9, 7), (6, 1)], [(0, 1), (2, 1)])
+    together = reconstruct(planes, edges, *size)
+    assert together.shape == (3, *size[::-1])
+    for plane, found in zip(planes, together):
+        assert (reconstruct(plane, edges, *size) == found).all()
+
+
 def test_hundreds_of_tiny_edges_in_one_cell():
     edges = tiny(np.random.default_rng(0), 6, 5, 24)  # 576: crowded, so that the cell has a grid of its own
     f = samples_for(np.random.default_rng(1), 5, 6)

@@ -104,26 +104,26 @@ def peaks(const float[:, :, ::1] bank, float sign, const double[:, ::1] unit, fl
 
 
 cdef Py_ssize_t _walk(
-    const float[:, :, ::1] bank, float sign, const unsigned char[:, :, ::1] used, const double[:, ::1] unit, double low,
+    const float[:, :, ::1] bank, float sign, const unsigned int[:, ::1] used, const double[:, ::1] unit, double low,
     Py_ssize_t f, double x, double y, double[:, ::1] out, double sx, double sy, Py_ssize_t most, bint *closed,
 ) noexcept nogil:
     """Points of a line from (x, y) in direction f on, as x, y, response, direction; how many of them."""
     cdef Py_ssize_t n = bank.shape[0], h = bank.shape[1], w = bank.shape[2]
     cdef Py_ssize_t m = 0, weak = 0, taken = 0, turn, g, best_g, i, j, q
-    cdef double v, best, mx, my, bx, by, nx, ny, left, middle, right, d
+    cdef double v, raw, best, mx, my, bx, by, nx, ny, left, middle, right, d
     closed[0] = False
     while m < most:
-        best, best_g, bx, by = -1.0, f, x, y
+        best, best_g, bx, by, middle = -1.0, f, x, y, 0.0
         for turn in range(-2, 3):
             g = f + 3 * turn
             g = (g + 8 * n) % (8 * n)
             mx, my = x + unit[g, 0], y + unit[g, 1]
-            v = _towards(bank, sign, g, mx, my) * (1.0 - 0.03 * (turn if turn >= 0 else -turn))
+            raw = _towards(bank, sign, g, mx, my)
+            v = raw * (1.0 - 0.03 * (turn if turn >= 0 else -turn))
             if v > best:
-                best, best_g, bx, by = v, g, mx, my
+                best, best_g, bx, by, middle = v, g, mx, my, raw
         nx, ny = -unit[best_g, 1], unit[best_g, 0]
         left = _towards(bank, sign, best_g, bx - 0.7 * nx, by - 0.7 * ny)
-        middle = _towards(bank, sign, best_g, bx, by)
         right = _towards(bank, sign, best_g, bx + 0.7 * nx, by + 0.7 * ny)
         d = left - 2.0 * middle + right
         if d < -1e-9:
@@ -138,7 +138,7 @@ cdef Py_ssize_t _walk(
             break
         i, j = <Py_ssize_t>(by + 0.5), <Py_ssize_t>(bx + 0.5)
         q = ((best_g + 2) >> 2) % n
-        taken = taken + 1 if used[q, i, j] else 0
+        taken = taken + 1 if (used[i, j] >> q) & 1 else 0
         if taken > TAKEN:
             break
         x, y, f = bx, by, best_g
@@ -151,28 +151,33 @@ cdef Py_ssize_t _walk(
     return m if m > 0 else 0
 
 
-cdef void _take(unsigned char[:, :, ::1] used, const double[:, ::1] line, Py_ssize_t m, double wide) noexcept nogil:
-    """Mark what lies along a line, and in nearly its direction, as used."""
-    cdef Py_ssize_t n = used.shape[0], h = used.shape[1], w = used.shape[2]
-    cdef Py_ssize_t t, k, q, i, j
+cdef void _take(
+    unsigned int[:, ::1] used, Py_ssize_t n, const double[:, ::1] line, Py_ssize_t m, double wide
+) noexcept nogil:
+    """Mark what lies along a line, and in nearly its direction, of n, as used."""
+    cdef Py_ssize_t h = used.shape[0], w = used.shape[1]
+    cdef Py_ssize_t t, k, i, j
+    cdef unsigned int layers
     cdef double x, y
     for t in range(m):
         x, y = line[t, 0], line[t, 1]
+        layers = 0
         for k in range(-4, 5):
-            q = ((((<Py_ssize_t>line[t, 3]) + 2) >> 2) + k + 2 * n) % n
-            for i in range(max(0, <Py_ssize_t>(y - wide + 0.5)), min(h, <Py_ssize_t>(y + wide + 1.5))):
-                for j in range(max(0, <Py_ssize_t>(x - wide + 0.5)), min(w, <Py_ssize_t>(x + wide + 1.5))):
-                    if (i - y) * (i - y) + (j - x) * (j - x) <= wide * wide:
-                        used[q, i, j] = 1
+            layers |= <unsigned int>1 << (((((<Py_ssize_t>line[t, 3]) + 2) >> 2) + k + 2 * n) % n)
+        for i in range(max(0, <Py_ssize_t>(y - wide + 0.5)), min(h, <Py_ssize_t>(y + wide + 1.5))):
+            for j in range(max(0, <Py_ssize_t>(x - wide + 0.5)), min(w, <Py_ssize_t>(x + wide + 1.5))):
+                if (i - y) * (i - y) + (j - x) * (j - x) <= wide * wide:
+                    used[i, j] |= layers
 
 
 def follow(
     const float[:, :, ::1] bank, float sign, const double[:, ::1] unit, const int[:, ::1] seeds, Py_ssize_t begin,
-    double low, double wide, Py_ssize_t least, unsigned char[:, :, ::1] used, double[:, ::1] there, double[:, ::1] back,
+    double low, double wide, Py_ssize_t least, unsigned int[:, ::1] used, double[:, ::1] there, double[:, ::1] back,
     double[:, ::1] points, long long[::1] first,
 ):
     """Lines from the seeds (s, 3) on, from seed `begin`, until there is no room for another.
 
+    used: (h, w) at each place a bit for each layer that a line has taken there, of at most 32 layers.
     points: (p, 4) x, y, response, direction of all lines; first: where each begins. there, back: (m, 4) room for half a
     line. Returns the seed to go on with, the number of lines, and 1 where seeds are left.
     """
@@ -187,7 +192,7 @@ def follow(
                 break
             k, i, j = seeds[s, 0], seeds[s, 1], seeds[s, 2]
             s += 1
-            if used[k, i, j]:
+            if (used[i, j] >> k) & 1:
                 continue
             b = 0
             a = _walk(bank, sign, used, unit, low, 4 * k, j, i, there, j, i, room, &closed)
@@ -205,7 +210,7 @@ def follow(
                 points[at, 0], points[at, 1] = there[t, 0], there[t, 1]
                 points[at, 2], points[at, 3] = there[t, 2], there[t, 3]
                 at += 1
-            _take(used, points[size:at], at - size, wide)
+            _take(used, n, points[size:at], at - size, wide)
             if at - size < least:
                 at = size
                 continue
