@@ -101,8 +101,9 @@ def settle_junctions(
         again = set()
         for wave in _waves(_in_view(planar, sites, idle[0])):
             tasks = (partial(improve, wave[k : k + _TOGETHER]) for k in range(0, len(wave), _TOGETHER))
-            found = chain.from_iterable(threading.in_order(tasks, min(workers, len(wave) // _TOGETHER)))
-            for site, better in zip(wave, found):
+            # All of a wave is found before any of it is exchanged: a change may reach into another site's view.
+            found = list(chain.from_iterable(threading.in_order(tasks, min(workers, len(wave) // _TOGETHER))))
+            for site, better in zip(wave, found, strict=True):
                 if better is not None:
                     again.update(set(exchange.exchange(*better)).difference(site[0].tolist()))
 

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections import deque
 from collections.abc import Iterator, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import numpy.typing as npt
 
+from penink_cli.ground import threads as threading
 from penink_cli.ground.model import Strokes
 from penink_cli.outputs.page import Page
 from penink_cli.outputs.raster._compiled import cover as _cover
@@ -52,18 +52,7 @@ def bands(layers: Sequence[Strokes], page: Page, dpi: float, maxval: int, thread
         _cover.band(points, first, radii, knot_radii, chosen, top, bits, np.empty(padded // 4, np.uint64), greys, out)
         return out
 
-    numbers = range(-(-height // rows))
-    if threads == 1:
-        yield from map(draw, numbers)
-        return
-    with ThreadPoolExecutor(threads) as pool:
-        waiting: deque[Future[Band]] = deque()
-        for number in numbers:
-            waiting.append(pool.submit(draw, number))
-            if len(waiting) > 2 * threads:
-                yield waiting.popleft().result()
-        while waiting:
-            yield waiting.popleft().result()
+    return threading.in_order((partial(draw, number) for number in range(-(-height // rows))), threads)
 
 
 def _members(
