@@ -2,6 +2,7 @@
 
 page             where the sheet lies on the paper
 postscript       EPS, or a page for a printer; preview: the small picture in an EPS
+  postscript_arrays  the arrays of numbers that a page is, and the procedures that draw them
 svg              with penwork: strokes shared out among a plotter's pens
 pdf
   swelling         the outlines of strokes that swell, where only shapes can be filled

@@ -9,7 +9,7 @@ import pytest
 from scipy.spatial import cKDTree
 
 from penink_cli.formats import strokes
-from penink_cli.outputs import postscript
+from penink_cli.outputs import postscript, postscript_arrays
 from penink_cli.outputs.page import ink_box, lay_out
 from penink_cli.travel.order import ordered_each
 from tests.outputs.drawings import crosshatch, every_kind, strokes_of
@@ -64,14 +64,14 @@ def test_the_numbers_say_where_the_strokes_are(drawing):
     t = np.linspace(0, 1, 33)[:, None]
     found = drawn(written([drawing]))
     expected = [(w, drawing[i] * (1, -1)) for i, w in enumerate(drawing.widths)]
-    pieces = sum(max(1, -(-(len(p) - 1) // (3 * postscript.CHAIN))) for _, p in expected)
+    pieces = sum(max(1, -(-(len(p) - 1) // (3 * postscript_arrays.CHAIN))) for _, p in expected)
     assert len(found) == pieces
     ink = cKDTree(np.concatenate([sampled(p, t) for _, p in found]))
     for width, points in expected:
         curve = sampled(points, t)
         distance, _ = ink.query(curve)
         spacing = np.hypot(*np.diff(curve, axis=0).T).max(initial=0) / 2
-        assert distance.max() <= 2.5 / postscript.UNITS + spacing
+        assert distance.max() <= 2.5 / postscript_arrays.UNITS + spacing
         assert any(abs(w - width) < 1e-3 for w, _ in found)
 
 
