@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy import ndimage
 
-from penink_cli.ground.masks import distance, filled, grown, labelled, near, opened, part_at
+from penink_cli.ground.masks import distance, filled, grown, labelled, near, opened, part_at, sizes
 
 
 @pytest.mark.parametrize("share", [0.0, 0.1, 0.4, 0.7, 0.97])
@@ -18,6 +18,8 @@ def test_parts_and_distances_are_scipys(share, shape):
     assert len(boxes) == count and np.array_equal(part, wanted)
     sides = [[box[0].start, box[0].stop, box[1].start, box[1].stop] for box in ndimage.find_objects(wanted)]
     assert boxes.tolist() == sides
+    other = np.random.default_rng(1).random(shape) < 0.5
+    assert sizes(part, count, other).tolist() == ndimage.sum_labels(other, wanted, range(count + 1)).tolist()
     if not mask.all():
         away = ndimage.distance_transform_edt(mask)
         assert np.array_equal(distance(mask), away)

@@ -16,7 +16,7 @@ from penink_cli.blasting import bordered, marks
 from penink_cli.blasting.light import LightThings
 from penink_cli.blasting.sheet import Cells, resample
 from penink_cli.composition.filters import Picture, blurred
-from penink_cli.ground.masks import labelled, near
+from penink_cli.ground.masks import labelled, near, sizes
 from penink_cli.ground.model import Floats, Strokes
 
 #: The tone from which on it is black where a texture ends in black, and where one can be as dark as DARKEST itself.
@@ -60,43 +60,72 @@ def solids(
     if fine > 1:
         h, w = round(h * fine), round(w * fine)
         tone = resample(tone, h, w)
-    tones: Picture = tone.astype(np.float32)  # of single precision: the whole sheet is looked at several times
     px = w / width_pt
+    close = resample(light.within(FALLS_PT).astype(np.float64), h, w) > 0 if light else None
+    alone = None
+    if light and not everywhere:
+        alone = resample(light.within(BESIDE_PT).astype(np.float64), h, w) > 0.5
+    dark = _dark(tone, px, black, close, alone, ink)
+    chains: list[Floats] = []
+    widths: list[float] = []
+    bordered.fill(
+        dark, np.array([width_pt / w, height_pt / h]), PEN_PT if pen_pt is None else pen_pt, gain_pt,
+        chains, widths, pen_pt is not None,
+    )  # fmt: skip
+    return Strokes.of(width_pt, height_pt, chains, widths)
+
+
+def _dark(
+    tone: Floats, px: float, black: float, close: marks.Mask | None, alone: marks.Mask | None, ink: Cells
+) -> Picture:
+    """A tone (h, w) that exceeds `marks.LEVEL` where it is to be filled, and is 0 where nothing is near.
+
+    px: pixels in a point. black, ink: as in `solids`. close: what is close to small light things, where there are any.
+    alone: the only places that may be filled, None for all.
+    """
+    value, smooth = _values(tone, px, black, close, alone is None)
+    if alone is not None:
+        value[~alone] = 0.0
+    core = smooth > black
+    blots = None
+    if alone is None:
+        deep = blurred(smooth, WIDE_PT * px, 1) >= AROUND  # dark all around
+        blots = _blots(smooth, core, deep, black, px)
+        value[_flecks(value, smooth, px)] = np.nextafter(np.float32(marks.LEVEL), np.float32(1))
+    del smooth
+    inside = value > marks.LEVEL
+    part, boxes = labelled(inside)
+    area, size = (sizes(part, len(boxes), mask) for mask in (core, inside))
+    keep = area >= LEAST_PT2 * px * px
+    h, w = tone.shape
+    rows, columns = np.arange(h) * ink.shape[0] // h, np.arange(w) * ink.shape[1] // w
+    keep &= sizes(part, len(boxes), (ink > marks.INKED)[rows][:, columns]) < marks.INKED * size
+    if blots is not None:
+        keep &= sizes(part, len(boxes), blots) < 0.5 * area
+    keep[0] = False
+    value[~near(~keep[part], 1.5, strictly=True)] = 0.0  # up to the places between which the border lies
+    return np.clip(value, 0, 1, out=value)
+
+
+def _values(
+    tone: Floats, px: float, black: float, close: marks.Mask | None, everywhere: bool
+) -> tuple[Picture, Picture]:
+    """How black it is, of which more than `marks.LEVEL` is black; and the tone, smoothed: (h, w) each."""
+    tones: Picture = tone.astype(np.float32)  # of single precision: the whole sheet is looked at several times
     fall = FALLS_PT * px
     smooth = blurred(tones, SMOOTH_PT * px, 1)
     if everywhere:
         smooth = _without_grain(smooth, px)
-    core = smooth > black
-    falls = near(smooth >= LIGHT, fall, strictly=True) & near(~core, fall, strictly=True)
+    falls = near(smooth >= LIGHT, fall, strictly=True) & near(smooth <= black, fall, strictly=True)
+    value = smooth - black
     # how much darker a place is than what black begins with there, half way up or down where it does
     darker = np.where(smooth > marks.LEVEL, np.maximum(tones, smooth), tones)  # smoothed outside, it would reach out
-    value = np.asarray(np.where(falls, darker - marks.LEVEL, smooth - black) + marks.LEVEL, np.float32)
-    if light:
-        close = resample(light.within(FALLS_PT).astype(np.float64), h, w) > 0
-        value = np.where(close & falls, tones, value)  # smoothed, it would be smaller
-    if light and not everywhere:
-        value = np.where(resample(light.within(BESIDE_PT).astype(np.float64), h, w) > 0.5, value, 0.0)
-    if everywhere:
-        deep = blurred(smooth, WIDE_PT * px, 1) >= AROUND  # dark all around
-        blots, flecks = _blots(smooth, core, deep, black, px), _flecks(value, smooth, px)
-        value = np.where(flecks, np.nextafter(np.float32(marks.LEVEL), np.float32(1)), value)
-    part, boxes = labelled(value > marks.LEVEL)
-    count = len(boxes) + 1
-    rows, columns = np.arange(h) * ink.shape[0] // h, np.arange(w) * ink.shape[1] // w
-    drawn = np.bincount(part[(ink > marks.INKED)[rows][:, columns]], minlength=count)
-    area, size = (np.bincount(p, minlength=count) for p in (part[core], part[part > 0]))
-    keep = (area >= LEAST_PT2 * px * px) & (drawn < marks.INKED * size)
-    if everywhere:
-        keep &= np.bincount(part[blots], minlength=count) < 0.5 * area
-    keep[0] = False
-    mine = near(~keep[part], 1.5, strictly=True)  # up to the places between which the border lies
-    chains: list[Floats] = []
-    widths: list[float] = []
-    bordered.fill(
-        np.where(mine, np.clip(value, 0, 1), 0.0).astype(np.float64), np.array([width_pt / w, height_pt / h]),
-        PEN_PT if pen_pt is None else pen_pt, gain_pt, chains, widths, pen_pt is not None,
-    )  # fmt: skip
-    return Strokes.of(width_pt, height_pt, chains, widths)
+    darker -= marks.LEVEL
+    np.copyto(value, darker, where=falls)
+    value += marks.LEVEL
+    if close is not None:
+        np.copyto(value, tones, where=close & falls)  # smoothed, it would be smaller
+    return value, smooth
 
 
 def _without_grain(tone: Picture, px: float) -> Picture:
@@ -110,7 +139,8 @@ def _without_grain(tone: Picture, px: float) -> Picture:
     rest = tone - around
     rest -= np.clip(rest, -NOISE, NOISE)
     around += rest
-    return np.where(dark, around, tone)
+    np.copyto(around, tone, where=~dark)
+    return around
 
 
 def _blots(tone: Picture, core: marks.Mask, deep: marks.Mask, black: float, px: float) -> marks.Mask:
@@ -119,11 +149,10 @@ def _blots(tone: Picture, core: marks.Mask, deep: marks.Mask, black: float, px: 
     core: where the tone exceeds `black`; deep: where it is dark all around.
     """
     of, boxes = labelled(core)
-    size = np.bincount(of[core], minlength=len(boxes) + 1)
+    little = (sizes(of, len(boxes), core) < BLOT_PT2 * px * px)[of]
     thing, boxes = labelled(tone > black - NEARLY)
-    whole = np.bincount(thing[thing > 0], minlength=len(boxes) + 1)
-    dark = np.bincount(thing[core], minlength=len(boxes) + 1)
-    little = (size < BLOT_PT2 * px * px)[of] | (dark < SHARE * whole)[thing]
+    whole, dark = (sizes(thing, len(boxes), mask) for mask in (thing > 0, core))
+    little |= (dark < SHARE * whole)[thing]
     return np.asarray(core & little & deep)
 
 
@@ -134,8 +163,8 @@ def _flecks(value: Picture, tone: Picture, px: float) -> marks.Mask:
     along its border, as hatching has no room in them.
     """
     hole, boxes = labelled(value <= marks.LEVEL)
-    size, count = np.bincount(hole[hole > 0], minlength=len(boxes) + 1), len(boxes) + 1
-    lightest = [np.bincount(hole[(hole > 0) & (tone < least)], minlength=count) == 0 for least in (AROUND, marks.LEVEL)]
+    size = sizes(hole, len(boxes), hole > 0)
+    lightest = [sizes(hole, len(boxes), tone < least) == 0 for least in (AROUND, marks.LEVEL)]
     little = [size < area * px * px for area in (FLECK_PT2, BEAD_PT2)]
     fleck = (lightest[0] & little[0]) | (lightest[1] & little[1])
     fleck[0] = False

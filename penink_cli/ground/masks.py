@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from penink_cli.ground._compiled import masks as _masks
-from penink_cli.ground.model import Floats
+from penink_cli.ground.model import Floats, Ints
 
 Mask = npt.NDArray[np.bool_]
 
@@ -32,6 +32,17 @@ def labelled(mask: Mask) -> tuple[npt.NDArray[np.int32], npt.NDArray[np.int32]]:
     box = np.empty((_masks.label(_octets(mask), True, part), 4), np.int32)
     _masks.boxes(part, box)
     return part, box
+
+
+def sizes(part: npt.NDArray[np.int32], count: int, mask: Mask) -> Ints:
+    """How many pixels of the mask (h, w) are in each of so many parts, (count + 1,); before them those in none.
+
+    >>> sizes(labelled(np.eye(3, 5, 2) > 0)[0], 1, np.ones((3, 5), bool)).tolist()
+    [12, 3]
+    """
+    size = np.zeros(count + 1, np.int64)
+    _masks.sizes(part, _octets(mask), size)
+    return size
 
 
 def distance(mask: Mask) -> Floats:

@@ -1,15 +1,19 @@
 """Where `draw` spends its processor time, filter by filter.
 
-Run as ``python -m tests.benchmarks.draw [stages] [watch] [half|two|twelve …]``. A portrait with a camera's grain, as a
+Run as ``python -m tests.benchmarks.draw [stages] [watch] [against CHECKOUT] [half|two|twelve …]``. A portrait with a camera's grain, as a
 JPEG of half a megapixel, two and twelve, is drawn 6 in wide. Times are of the processor, all threads together; Canny's
 detector of scikit-image (sigma 2) on the same photograph in the same run is the unit beside them.
 
 `watch`: seconds from the saving of a style or of somebody's strokes to the drawing's being there again, while
 ``draw --watch`` follows them: on the wall, so on a quiet machine alone; and of the processor.
+
+`against`: the same drawings by this checkout and by an older one that is built, in turn and several times, so that a
+machine's other work slows both: medians, and this one's share of the older one's, filter by filter.
 """
 
 import json
 import os
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -17,6 +21,8 @@ import time
 from pathlib import Path
 
 SIZES = {"half": (900, 600), "two": (1732, 1155), "twelve": (4242, 2828)}
+HERE = Path(__file__).parents[2]
+TURNS = 7  # of either checkout, after one that fills the caches
 DRAWINGS = (("true", ".ps"), ("house", ".ps"), ("house", ".penink"))
 
 
@@ -82,10 +88,11 @@ def peak():
     return int(text.split("VmHWM:")[1].split()[0]) / 1024
 
 
-def drawn(photo, output, *options):
-    """What one call in a process of its own took, and the result's bytes."""
-    command = [sys.executable, "-m", "tests.benchmarks.draw", "child", photo, "-o", output, *options]
-    done = subprocess.run(command, check=True, capture_output=True)
+def drawn(photo, output, *options, checkout=HERE):
+    """What one call in a process of its own took, and the result's bytes. checkout: whose package draws."""
+    command = [sys.executable, __file__, "child", photo, "-o", output, *options]
+    environment = {**os.environ, "PYTHONPATH": str(checkout)}
+    done = subprocess.run(command, check=True, capture_output=True, env=environment, cwd=output.parent)
     return json.loads(done.stdout), output.read_bytes()
 
 
@@ -107,6 +114,30 @@ def stages(folder, sizes):
                       f"    {each}", flush=True)  # fmt: skip
             if results[0] != results[1]:
                 sys.exit("the threads change the bytes")
+
+
+def against(folder, sizes, older):
+    """This checkout beside an older one, in turn."""
+    for size in sizes:
+        photo = folder / f"{size}.jpg"
+        portrait(photo, SIZES[size])
+        for style, ending in DRAWINGS:
+            options = ["--style", style, "--width", "6in"]
+            runs, bytes_of = {older: [], HERE: []}, {}
+            for turn in range(TURNS + 1):
+                for checkout, took in runs.items():
+                    one, bytes_of[checkout] = drawn(photo, folder / f"d{ending}", *options, checkout=checkout)
+                    if turn:
+                        took.append(one)
+            print(f"{SIZES[size][0]} x {SIZES[size][1]} pixels, {style} {ending}: older, this, this by older;",
+                  "the same bytes" if bytes_of[HERE] == bytes_of[older] else "OTHER BYTES")  # fmt: skip
+            for name in ("total", "wall", "MB", *runs[HERE][0]["spent"]):
+                old, new = (statistics.median(_figure(one, name) for one in took) for took in runs.values())
+                print(f"  {name:<18}{old:8.3f}{new:8.3f}" + (f"{new / old:7.2f}" if old else ""), flush=True)
+
+
+def _figure(took, name):
+    return took[name] if name in took else took["spent"].get(name, 0.0)
 
 
 SAVED = {  # what is saved, after the drawing in crosshatch
@@ -169,9 +200,17 @@ def main():
         child()
         return
     told = sys.argv[1:]
+    older = None
+    if "against" in told:
+        at = told.index("against") + 1
+        if at == len(told) or not (Path(told[at]) / "penink_cli").is_dir():
+            sys.exit("against what? a checkout, built, is wanted after it")
+        older = Path(told[at]).resolve()
     with tempfile.TemporaryDirectory() as name:
         sizes = [size for size in SIZES if size in told] or list(SIZES)
-        if "watch" not in told or "stages" in told:
+        if older is not None:
+            against(Path(name), sizes, older)
+        if not {"watch", "against"}.intersection(told) or "stages" in told:
             stages(Path(name), sizes)
         if "watch" in told or not told:
             watch(Path(name))

@@ -11,54 +11,105 @@ def label(const unsigned char[:, ::1] mask, bint corners, int[:, ::1] part) -> i
 
     corners: whether those touch that have a corner in common. part: (h, w) the number of each pixel's, 0 for none.
     Returns how many there are.
+
+    Every run of a row gets the number of what it touches in the row above, or a new one; where it joins several, all
+    but the least go under that. The least number of a part is that of its first pixel's run.
+
+        1 1 . 2 .
+        1 . . 2 .    number  1 2 3
+        1 1 1 1 .    under   1 1 3    since the third row joins 2 to 1
+        . . . . .
+        . 3 3 3 .
     """
-    cdef Py_ssize_t h = mask.shape[0], w = mask.shape[1], i, j, k, top, row, column, count = 0
-    cdef int number = 0
-    cdef Py_ssize_t* waiting = NULL
+    cdef Py_ssize_t h = mask.shape[0], w = mask.shape[1], i, j, k, begin, last
+    cdef int count = 0, number, above, seen
+    cdef int* under = NULL
     try:
-        waiting = <Py_ssize_t*>room(h * w, sizeof(Py_ssize_t))
+        under = <int*>room(h * ((w + 1) // 2) + 1, sizeof(int))
         with nogil:
+            under[0] = 0
             for i in range(h):
-                for j in range(w):
-                    part[i, j] = 0
-            for i in range(h):
-                for j in range(w):
-                    if not mask[i, j] or part[i, j]:
+                j = 0
+                while j < w:
+                    if not mask[i, j]:
+                        part[i, j] = 0
+                        j += 1
                         continue
+                    begin = j
+                    while j < w and mask[i, j]:
+                        j += 1
+                    number = seen = 0
+                    if i > 0:
+                        last = min(w, j + corners)
+                        for k in range(max(0, begin - corners), last):
+                            above = part[i - 1, k]
+                            if above and above != seen:
+                                seen = above
+                                number = joined(under, number, above) if number else root(under, above)
+                    if not number:
+                        count += 1
+                        under[count] = number = count
+                    for k in range(begin, j):
+                        part[i, k] = number
+            number = 0
+            for k in range(1, count + 1):  # what lies under another has a lesser one above it, which is numbered
+                if under[k] == k:
                     number += 1
-                    part[i, j] = number
-                    waiting[0] = i * w + j
-                    count = 1
-                    while count:
-                        count -= 1
-                        row = waiting[count] // w
-                        column = waiting[count] - row * w
-                        for top in range(max(0, row - 1), min(h, row + 2)):
-                            for k in range(max(0, column - 1), min(w, column + 2)):
-                                if not corners and top != row and k != column:
-                                    continue
-                                if mask[top, k] and not part[top, k]:
-                                    part[top, k] = number
-                                    waiting[count] = top * w + k
-                                    count += 1
+                    under[k] = number
+                else:
+                    under[k] = under[under[k]]
+            for i in range(h):
+                for j in range(w):
+                    part[i, j] = under[part[i, j]]
         return number
     finally:
-        free(waiting)
+        free(under)
+
+
+cdef inline int root(int* under, int number) noexcept nogil:
+    """The least number of the part; what was passed on the way goes straight under its own root's."""
+    while under[number] != number:
+        under[number] = under[under[number]]
+        number = under[number]
+    return number
+
+
+cdef inline int joined(int* under, int a, int b) noexcept nogil:
+    """The least number of two parts that are one."""
+    a, b = root(under, a), root(under, b)
+    if a < b:
+        under[b] = a
+        return a
+    under[a] = b
+    return b
 
 
 def boxes(const int[:, ::1] part, int[:, ::1] box) -> None:
     """Fill in first row, one past the last, first column and one past the last (parts, 4) of each part."""
-    cdef Py_ssize_t i, j, k
+    cdef Py_ssize_t h = part.shape[0], w = part.shape[1], i, j, k, begin
     with nogil:
         for k in range(box.shape[0]):
-            box[k, 0], box[k, 1] = <int>part.shape[0], 0
-            box[k, 2], box[k, 3] = <int>part.shape[1], 0
+            box[k, 0], box[k, 1] = <int>h, 0
+            box[k, 2], box[k, 3] = <int>w, 0
+        for i in range(h):
+            j = 0
+            while j < w:
+                k = part[i, j] - 1
+                begin = j
+                while j < w and part[i, j] == k + 1:
+                    j += 1
+                if k >= 0:
+                    box[k, 0], box[k, 1] = min(box[k, 0], <int>i), <int>i + 1
+                    box[k, 2], box[k, 3] = min(box[k, 2], <int>begin), max(box[k, 3], <int>j)
+
+
+def sizes(const int[:, ::1] part, const unsigned char[:, ::1] mask, long long[::1] size) -> None:
+    """Add to the size of each part, by number from 0 on, how many of its pixels (h, w) are in the mask."""
+    cdef Py_ssize_t i, j
+    with nogil:
         for i in range(part.shape[0]):
             for j in range(part.shape[1]):
-                k = part[i, j] - 1
-                if k >= 0:
-                    box[k, 0], box[k, 1] = min(box[k, 0], <int>i), max(box[k, 1], <int>i + 1)
-                    box[k, 2], box[k, 3] = min(box[k, 2], <int>j), max(box[k, 3], <int>j + 1)
+                size[part[i, j]] += mask[i, j]
 
 
 def distance(const unsigned char[:, ::1] mask, double[:, ::1] out) -> None:
