@@ -1,8 +1,9 @@
 """Where `draw` spends its processor time, filter by filter.
 
-Run as ``python -m tests.benchmarks.draw [stages] [watch] [against CHECKOUT] [half|two|twelve …]``. A portrait with a camera's grain, as a
-JPEG of half a megapixel, two and twelve, is drawn 6 in wide. Times are of the processor, all threads together; Canny's
-detector of scikit-image (sigma 2) on the same photograph in the same run is the unit beside them.
+Run as ``python -m tests.benchmarks.draw [stages] [watch] [against CHECKOUT] [half|two|twelve …]``. A portrait with a
+camera's grain, as a JPEG of half a megapixel, two and twelve, is drawn 6 in wide. Times are of the processor, all
+threads together; Canny's detector of scikit-image (sigma 2) on the same photograph in the same run is the unit beside
+them.
 
 `watch`: seconds from the saving of a style or of somebody's strokes to the drawing's being there again, while
 ``draw --watch`` follows them: on the wall, so on a quiet machine alone; and of the processor.

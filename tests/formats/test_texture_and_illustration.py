@@ -6,10 +6,12 @@ import io
 import json
 from typing import Any
 
+import numpy as np
 import pytest
 
 from penink_cli.formats import texture
 from penink_cli.ground.errors import PeninkError
+from penink_cli.options.textures import find_texture
 from tests.formats.readers import READERS
 from tests.fuzz.seeds import ILLUSTRATION, TEXTURE
 
@@ -174,3 +176,22 @@ def test_strokes_are_drawn_by_priority_and_equal_ones_in_their_order():
     given = [{**STROKE, "priority": p, "width": w} for p, w in ((2, 1), (1, 2), (2, 3), (-1, 4))]
     found = texture.read(io.BytesIO(text_of(tile(strokes=given))), "t")
     assert found.strokes.widths.tolist() == [4, 2, 1, 3] and found.priorities.tolist() == [-1, 1, 2, 2]
+
+
+@pytest.mark.parametrize("name", ["crosshatch", "stipple", "scribble"])
+def test_what_is_read_in_bulk_is_what_json_reads(name):
+    out = io.BytesIO()
+    texture.write(out, find_texture(name))
+    text = out.getvalue()
+    other = text.rstrip()[:-1] + b', "note": 0}'  # the strokes are not the last member: left to json
+    assert texture._plain(text)[1] is not None and texture._plain(other)[1] is None
+    bulk, slow = (texture.read(io.BytesIO(one), "t") for one in (text, other))
+    for array in ("points", "first", "widths"):
+        assert np.array_equal(getattr(bulk.strokes, array), getattr(slow.strokes, array))
+    assert np.array_equal(bulk.priorities, slow.priorities) and bulk.layers == slow.layers and len(bulk.strokes) > 1000
+
+
+def test_what_is_wrong_before_strokes_read_in_bulk_is_told_in_its_line():
+    text = text_of(tile()).replace(b"{", b"{\n", 1).replace(b'"whole": false', b'"whole": fals')
+    with pytest.raises(PeninkError, match="line 2, column"):
+        texture.read(io.BytesIO(text), "t")
