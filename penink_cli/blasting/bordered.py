@@ -10,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from penink_cli.blasting import curve_fitting, curves, marks
+from penink_cli.composition.filters import Picture
 from penink_cli.ground.masks import labelled, near
 from penink_cli.ground.model import Floats
 
@@ -27,7 +28,7 @@ LEAST_THIN_PT2 = 0.3
 
 
 def fill(
-    tone: Floats, scale: Floats, pen_pt: float, gain_pt: float, chains: list[Floats], widths: list[float], fixed: bool
+    tone: Picture, scale: Floats, pen_pt: float, gain_pt: float, chains: list[Floats], widths: list[float], fixed: bool
 ) -> None:
     """Strokes that fill where the tone (h, w) exceeds `marks.LEVEL`; scale (2,): a pixel's width and height, points.
 
@@ -53,10 +54,11 @@ def fill(
         widths.extend([pen_pt] * len(rows))
     thin = _thin(inside, half, 1 / float(scale[0]))
     if thin.any():
-        marks.fill(np.where(thin, tone, 0.0), np.zeros(2), scale, pen_pt, gain_pt, chains, widths, fixed)
+        places: Floats = np.where(thin, tone, 0.0).astype(np.float64)
+        marks.fill(places, np.zeros(2), scale, pen_pt, gain_pt, chains, widths, fixed)
 
 
-def _rings(tone: Floats, scale: Floats) -> list[Floats]:
+def _rings(tone: Picture, scale: Floats) -> list[Floats]:
     """The border as smooth rings (n, 2), points, the last beside the first; what is dark lies on the same side of all.
 
     It closes along the frame.
@@ -108,7 +110,7 @@ def _normals(ring: Floats) -> Floats:
     return np.column_stack([-ahead[:, 1], ahead[:, 0]]) / length[:, None]
 
 
-def _inside(tone: Floats, scale: Floats, points: Floats) -> marks.Mask:
+def _inside(tone: Picture, scale: Floats, points: Floats) -> marks.Mask:
     """Whether the tone between pixels exceeds the level at points (n, 2)."""
     h, w = tone.shape
     at = np.clip(points / scale - 0.5, 0, [w - 1, h - 1])

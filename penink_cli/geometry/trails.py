@@ -1,6 +1,6 @@
 """Edges as few long trails, as a pen would follow them: straight on at junctions, each edge once.
 
-Used by those who write edges down and by those who draw them.
+Used by those who write edges down and by those who draw them. This module alone imports the compiled kernel.
 """
 
 from __future__ import annotations
@@ -8,6 +8,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from penink_cli.geometry._compiled import trails as _trails
 from penink_cli.ground.model import Ints
 
 Trail = tuple[list[int], list[int]]
@@ -24,46 +25,20 @@ def trails(points: npt.NDArray[np.floating] | Ints, ends: Ints, least_cosine: fl
     rank = np.empty(len(points), np.int64)
     by_place = np.lexsort((points[:, 0], points[:, 1]))
     rank[by_place] = np.arange(len(points))
-    around: list[list[tuple[int, int]]] = [[] for _ in range(len(points))]
-    for edge in np.lexsort((rank[ends].max(axis=1), rank[ends].min(axis=1))).tolist():
-        a, b = ends[edge].tolist()
-        around[a].append((b, edge))
-        around[b].append((a, edge))
-    at, used = points.tolist(), bytearray(len(ends))
-    limit = least_cosine * abs(least_cosine)
-
-    def onward(here: int, came: tuple[float, float] | None) -> tuple[int, int] | None:
-        free = [way for way in around[here] if not used[way[1]]]
-        if came is None or not free or len(around[here]) == 2:
-            return free[0] if free else None
-        x, y = at[here]
-        length = came[0] * came[0] + came[1] * came[1]
-
-        def straightness(way: tuple[int, int]) -> float:
-            dx, dy = at[way[0]][0] - x, at[way[0]][1] - y
-            along = dx * came[0] + dy * came[1]
-            return float(along * abs(along) / ((dx * dx + dy * dy) * length))
-
-        best = max(free, key=straightness)
-        return best if straightness(best) >= limit else None
-
-    def walk(start: int) -> Trail:
-        vertices, edges, here = [start], [], start
-        came: tuple[float, float] | None = None
-        while (way := onward(here, came)) is not None:
-            used[way[1]] = 1
-            edges.append(way[1])
-            came = at[way[0]][0] - at[here][0], at[way[0]][1] - at[here][1]
-            here = way[0]
-            vertices.append(here)
-        return vertices, edges
-
-    found = []
-    for rings in (False, True):
-        for start in by_place.tolist():
-            while (left := sum(not used[edge] for _, edge in around[start])) and (rings or left % 2):
-                found.append(walk(start))
-    return found
+    order = np.lexsort((rank[ends].max(axis=1), rank[ends].min(axis=1)))
+    m = len(ends)
+    vertices, along, count = np.empty(2 * m, np.int32), np.empty(m, np.int32), np.empty(m, np.int32)
+    found = _trails.follow(
+        np.ascontiguousarray(points, np.float64), np.ascontiguousarray(ends, np.int32), by_place, order,
+        least_cosine * abs(least_cosine), vertices, along, count,
+    )  # fmt: skip
+    met, edges = vertices[: m + found].tolist(), along.tolist()
+    result, i = [], 0
+    for k, edges_of_it in enumerate(count[:found].tolist()):
+        j = i + edges_of_it
+        result.append((met[i + k : j + k + 1], edges[i:j]))
+        i = j
+    return result
 
 
 def hanging_together(edges: npt.NDArray[np.integer], count: int) -> Ints:
