@@ -90,10 +90,8 @@ def noise_level(grey: npt.NDArray[np.floating]) -> float:
     counts = np.zeros(4096, np.int64)
     scale = 4096 / 2.0
     for top in range(0, height - 2, _BAND_ROWS):
-        band = np.asarray(grey[top : min(height, top + _BAND_ROWS + 2)], np.float32)
-        across = band[:, :-2] - 2 * band[:, 1:-1] + band[:, 2:]
-        response = np.abs(across[:-2] - 2 * across[1:-1] + across[2:])
-        counts += np.bincount(np.minimum((response * scale).astype(np.int32), 4095).ravel(), minlength=4096)
+        band = np.ascontiguousarray(grey[top : min(height, top + _BAND_ROWS + 2)], np.float32)
+        _ridges.unevenness(band, scale, counts)
     cumulated = np.cumsum(counts)
     half = cumulated[-1] / 2
     k = int(np.searchsorted(cumulated, half))

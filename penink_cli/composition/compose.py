@@ -17,7 +17,7 @@ import numpy as np
 
 from penink_cli.arrangement.gradient import noise_level
 from penink_cli.composition import exposure, mixing, recolouring, relief
-from penink_cli.composition.filters import Picture, blurred, looked_up, shrunk
+from penink_cli.composition.filters import Picture, blurred, by_rows, looked_up, shrunk
 from penink_cli.ground.errors import ParameterError
 from penink_cli.ground.model import ColourImage, GreyImage
 
@@ -174,7 +174,9 @@ def _composed(
         grey = colours
     black, white = points(grey, pt, fade, threads)
     report(f"black point {black:.3f}, white point {white:.3f}")
-    grey = np.clip((grey - np.float32(black)) * np.float32(1 / (white - black)), 0, 1)
+    grey = by_rows(
+        lambda grey: np.clip((grey - np.float32(black)) * np.float32(1 / (white - black)), 0, 1), grey, threads=threads
+    )
     noise = noise_level(grey)
     key = exposure.inks(choice.target)
     key *= key
@@ -186,14 +188,23 @@ def _composed(
     exposed = looked_up(broad, table)
     # slopes belong to the middle of their steps
     slopes = looked_up(broad, slope, 0.5 / exposure.STEPS, 1 - 0.5 / exposure.STEPS)
-    lifted = np.float32(key) * carved * (exposed - broad)
-    lifted *= np.clip((np.float32(_LIGHTS) - broad) * np.float32(1 / _MIDDLE), 0, 1)
-    carved *= np.clip((np.float32(_SHINES) - broad) * np.float32(1 / _NEARLY), 0, 1)
-    exposed = _blank(exposed, carved, _BLANK_FROM, _BLANK, _PAPER)
+
+    def less_in_lights(carved: Picture, exposed: Picture, broad: Picture) -> Picture:
+        lifted = np.float32(key) * carved * (exposed - broad)
+        return lifted * np.clip((np.float32(_LIGHTS) - broad) * np.float32(1 / _MIDDLE), 0, 1)
+
+    def without_shine(carved: Picture, broad: Picture) -> Picture:
+        return carved * np.clip((np.float32(_SHINES) - broad) * np.float32(1 / _NEARLY), 0, 1)
+
+    lifted = by_rows(less_in_lights, carved, exposed, broad, threads=threads)
+    carved = by_rows(without_shine, carved, broad, threads=threads)
+    exposed = _blank(exposed, carved, _BLANK_FROM, _BLANK, _PAPER, threads=threads)
     carved *= np.float32(min(key, 1.0))
     result = relief.raised(detail, exposed, slopes, lifted, carved, choice.detail, noise, pt, threads)
-    result = np.clip((result - np.float32(_INK)) * np.float32(1 / (_PAPER - _INK)), 0, 1)
-    result = _blank(_sunk(result, pt, threads), carved, _LIGHT_FROM, _BARE)
+    result = by_rows(
+        lambda grey: np.clip((grey - np.float32(_INK)) * np.float32(1 / (_PAPER - _INK)), 0, 1), result, threads=threads
+    )
+    result = _blank(_sunk(result, pt, threads), carved, _LIGHT_FROM, _BARE, threads=threads)
     paper = int((grey > _PAGE_PAPER).sum()) / grey.size
     if paper > _PAGE:
         report(f"a page: {paper:.0%} of it is paper, and stays so")
@@ -203,23 +214,30 @@ def _composed(
 
 def _sunk(grey: Picture, pt: float, threads: int) -> Picture:
     """Grey (h, w) whose deep shades are black; what is lighter in them stays."""
+
+    def sunk(grey: Picture, around: Picture) -> Picture:
+        deep = np.clip((np.float32(_NOT_DEEP) - around) * np.float32(1 / (_NOT_DEEP - _ALL_DEEP)), 0, 1)
+        deep *= np.clip((np.float32(_STAYS) - grey) * np.float32(1 / _STAYS), 0, 1) * np.float32(2)
+        return np.maximum(grey - np.float32(_SINK) * np.minimum(deep, 1), 0)
+
     around = blurred(np.minimum(grey, np.float32(_STAYS)), _DEEP_PT * pt, threads)
-    deep = np.clip((np.float32(_NOT_DEEP) - around) * np.float32(1 / (_NOT_DEEP - _ALL_DEEP)), 0, 1)
-    deep *= np.clip((np.float32(_STAYS) - grey) * np.float32(1 / _STAYS), 0, 1) * np.float32(2)
-    result: Picture = np.maximum(grey - np.float32(_SINK) * np.minimum(deep, 1), 0)
-    return result
+    return by_rows(sunk, grey, around, threads=threads)
 
 
-def _blank(grey: Picture, carved: Picture, light: float, bare: float, paper: float = 1.0) -> Picture:
+def _blank(grey: Picture, carved: Picture, light: float, bare: float, paper: float = 1.0, threads: int = 1) -> Picture:
     """Grey (h, w) whose lights from `light` on rise evenly to `paper` at `bare`, unless they are in relief."""
-    over = np.maximum(grey - np.float32(light), 0)
     more = np.float32((paper - light) / (bare - light) - 1)
-    return grey + np.minimum(more * over, np.maximum(np.float32(paper) - grey, 0)) * (1 - carved)
+
+    def blank(grey: Picture, carved: Picture) -> Picture:
+        over = np.maximum(grey - np.float32(light), 0)
+        return grey + np.minimum(more * over, np.maximum(np.float32(paper) - grey, 0)) * (1 - carved)
+
+    return by_rows(blank, grey, carved, threads=threads)
 
 
 def points(grey: Picture, pt: float, fade: Picture | None, threads: int) -> tuple[float, float]:
     """The greys that become black and white."""
-    upto = exposure.histogram(np.clip(blurred(grey, _POINTS_BLUR_PT * pt, threads), 0, 1), fade, 4096)
+    upto = exposure.histogram(blurred(grey, _POINTS_BLUR_PT * pt, threads), fade, 4096)
     black, white = exposure.quantile(upto, _POINTS), exposure.quantile(upto, 1 - _POINTS)
     if white - black < _LEAST_RANGE:  # a picture of nearly one grey is not torn apart
         middle = min(max((black + white) / 2, _LEAST_RANGE / 2), 1 - _LEAST_RANGE / 2)
@@ -241,11 +259,20 @@ def narrow_range(photo: GreyImage | ColourImage) -> float | None:
 
 def _weight(grey: Picture, noise: float, pt: float, threads: int) -> Picture:
     """How much each place counts for the exposure: the subject decides, not an empty background."""
-    band = blurred(grey, _EYE_PT * pt, threads) - blurred(grey, _BROAD_PT * pt, threads)
-    busy = np.maximum(0, band * band - np.float32(0.3 * noise * noise))
-    activity = np.sqrt(np.maximum(blurred(busy, _AROUND_PT * pt, threads), 0))
-    usual = max(0.01, exposure.quantile(exposure.histogram(np.minimum(activity, 1), None, 4096), _BUSY))
-    return np.float32(_BACKGROUND) + np.minimum(np.float32(_MOST_BUSY), activity * np.float32(1 / usual))
+
+    def stirred(fine: Picture, broad: Picture) -> Picture:
+        band = fine - broad
+        return np.maximum(0, band * band - np.float32(0.3 * noise * noise))
+
+    fine, broad = (blurred(grey, sigma * pt, threads) for sigma in (_EYE_PT, _BROAD_PT))
+    busy = by_rows(stirred, fine, broad, threads=threads)
+    around = blurred(busy, _AROUND_PT * pt, threads)
+    activity = by_rows(lambda busy: np.sqrt(np.maximum(busy, 0)), around, threads=threads)
+    usual = max(0.01, exposure.quantile(exposure.histogram(activity, None, 4096), _BUSY))
+    return by_rows(
+        lambda activity: np.float32(_BACKGROUND) + np.minimum(np.float32(_MOST_BUSY), activity * np.float32(1 / usual)),
+        activity, threads=threads,
+    )  # fmt: skip
 
 
 def _scaled(values: np.ndarray, maxval: int, width: int, height: int, threads: int) -> Picture:

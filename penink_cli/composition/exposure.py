@@ -12,6 +12,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from penink_cli.composition import filters
 from penink_cli.composition.filters import Picture, gaussian
 from penink_cli.ground.errors import ParameterError
 from penink_cli.ground.model import Floats
@@ -52,11 +53,8 @@ def inks(target: Quantiles) -> float:
 
 def histogram(grey: Picture, weight: Picture | None, steps: int = STEPS) -> Floats:
     """How much of the picture is at most so light: (steps + 1,) from 0 to 1, at even steps of grey."""
-    bins = np.minimum((grey * np.float32(steps)).astype(np.int32), steps - 1).ravel()
-    # whole numbers: sums do not depend on their order
-    parts = None if weight is None else np.floor(weight * np.float32(4096) + np.float32(0.5)).astype(np.float64).ravel()
     upto = np.zeros(steps + 1)
-    np.cumsum(np.bincount(bins, parts, steps), out=upto[1:])
+    np.cumsum(filters.histogram(grey, weight, steps), out=upto[1:])
     return upto / upto[-1] if upto[-1] else np.linspace(0, 1, steps + 1)
 
 

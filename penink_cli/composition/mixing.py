@@ -92,8 +92,9 @@ def chosen_mix(colours: Picture, pixels_per_pt: float) -> Weights:
 
 def mixed(colours: Picture, mix: Weights) -> Picture:
     """Grey (h, w) of colours (h, w, 3), 0 … 1 if they are."""
-    r, g, b = (np.float32(w) for w in mix)
-    return np.clip(r * colours[..., 0] + g * colours[..., 1] + b * colours[..., 2], 0, 1)
+    out = np.empty(colours.shape[:2], np.float32)
+    _mixing.mix(np.ascontiguousarray(colours), *mix, out, 0, len(out))
+    return out
 
 
 def lab(colours: Picture) -> npt.NDArray[np.float64]:

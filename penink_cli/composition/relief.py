@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from penink_cli.composition.filters import Picture, blurred, enlarged, looked_up, shrunk
+from penink_cli.composition.filters import Picture, blurred, by_rows, enlarged, looked_up, shrunk
 
 _RADIUS_PT = 4.0  # of the Gaussian that the guided filter gathers with
 _FLAT = 0.045  # a local standard deviation of grey that is detail; what is well above is an edge
@@ -60,7 +60,10 @@ def base(
     kept: Picture = variance / (variance + flat * flat)
     rest = mean - kept * mean
     slope, offset = (enlarged(blurred(v, sigma, threads), width, height, threads) for v in (kept, rest))
-    return np.clip(slope * grey + offset, 0, 1), enlarged(relief, width, height, threads)
+    broad = by_rows(
+        lambda grey, slope, offset: np.clip(slope * grey + offset, 0, 1), grey, slope, offset, threads=threads
+    )
+    return broad, enlarged(relief, width, height, threads)
 
 
 def _in_relief(grey: Picture, pt: float, threads: int) -> Picture:
@@ -115,42 +118,66 @@ def raised(
     middle = blurred(detail, _FINE_PT * pt, threads)
     fine = detail - middle
 
-    def spread(values: Picture, sigma_pt: float) -> Picture:
-        return np.sqrt(np.maximum(blurred(values * values, sigma_pt * pt, threads), 0))
+    def variance(values: Picture, sigma_pt: float) -> Picture:
+        return blurred(values * values, sigma_pt * pt, threads)
 
     def guard(values: Picture, level: float) -> Picture:
         """Values without what is no more than noise."""
         if level <= 0:
             return values
-        return values * np.clip((spread(values, 1.5) - np.float32(level)) / np.float32(2 * level), 0.15, 1)
 
-    strong = spread(middle, 6.0)
-    each = looked_up(strong, _GAIN, 0.0, 0.5)
-    each *= np.float32(gain) * np.clip(slope, 0.8, 1.4)
-    each *= 1 + np.float32(_CARVED / _LIFTED) * np.clip(lifted, 0, _LIFTED)
-    lights = lights - np.float32(_TAKEN_BACK) * np.maximum(0, lifted - np.float32(_LIFT))
-    lights = lights - np.float32(_DOWN) * carved * np.maximum(0, lights - np.float32(_DOWN_TO))
-    each *= 1 + np.float32(_DEEPER) * carved
+        def guarded(values: Picture, variance: Picture) -> Picture:
+            return values * np.clip((_root(variance) - np.float32(level)) / np.float32(2 * level), 0.15, 1)
+
+        return by_rows(guarded, values, variance(values, 1.5), threads=threads)
+
+    def less_light(lights: Picture, lifted: Picture, carved: Picture) -> Picture:
+        lights = lights - np.float32(_TAKEN_BACK) * np.maximum(0, lifted - np.float32(_LIFT))
+        return lights - np.float32(_DOWN) * carved * np.maximum(0, lights - np.float32(_DOWN_TO))
+
+    def gained(
+        strong: Picture, slope: Picture, lifted: Picture, carved: Picture, grain: Picture, coarse: Picture
+    ) -> Picture:
+        each = looked_up(_root(strong), _GAIN, 0.0, 0.5) * (np.float32(gain) * np.clip(slope, 0.8, 1.4))
+        each *= 1 + np.float32(_CARVED / _LIFTED) * np.clip(lifted, 0, _LIFTED)
+        each *= 1 + np.float32(_DEEPER) * carved
+        grain = _root(grain) / (_root(coarse) + np.float32(0.004))
+        share = np.clip((grain - np.float32(_GRAIN)) * np.float32(1 / (_ALL_GRAIN - _GRAIN)), 0, 1)
+        each *= 1 - np.float32(1 - _GRAIN_LEFT) * share
+        return each
+
+    def drawn(each: Picture, middle: Picture, fine: Picture) -> Picture:
+        return _limited(each * middle) + np.float32(_FINE_SHARE) * each * fine
+
+    lights = by_rows(less_light, lights, lifted, carved, threads=threads)
     broad = blurred(middle, _BROAD_PT * pt, threads)
-    grain = spread(middle - broad, 6.0) / (spread(broad, 6.0) + np.float32(0.004))
-    share = np.clip((grain - np.float32(_GRAIN)) * np.float32(1 / (_ALL_GRAIN - _GRAIN)), 0, 1)
-    each *= 1 - np.float32(1 - _GRAIN_LEFT) * share
-    drawn = _limited(each * guard(middle, 0.5 * noise)) + np.float32(_FINE_SHARE) * each * guard(fine, noise)
-    return _with_room(lights, drawn, pt, threads)
+    strong, grain, coarse = (variance(values, 6.0) for values in (middle, middle - broad, broad))
+    each = by_rows(gained, strong, slope, lifted, carved, grain, coarse, threads=threads)
+    parts = guard(middle, 0.5 * noise), guard(fine, noise)
+    return _with_room(lights, by_rows(drawn, each, *parts, threads=threads), pt, threads)
+
+
+def _root(squares: Picture) -> Picture:
+    """The square root of what a low-pass, which may be wrong by a rounding, leaves of squares."""
+    return np.sqrt(np.maximum(squares, 0))
 
 
 def _with_room(lights: Picture, drawn: Picture, pt: float, threads: int) -> Picture:
     """Relief needs ink: where there is much detail the lights come down to carry it, and darks rise a little."""
-    strong = np.sqrt(np.maximum(blurred(drawn * drawn, 5.0 * pt, threads), 0))
-    share = np.clip((strong - np.float32(_RELIEF)) / np.float32(_RELIEF_RANGE), 0, 1)
-    more = 1 + np.float32(0.7) * share * np.clip((lights - np.float32(0.5)) / np.float32(0.3), 0, 1)
-    result = lights - np.float32(_RELIEF_INK) * share * np.maximum(0, lights - np.float32(_LIGHT))
-    strong = strong * more
-    above = np.maximum(0, result + np.float32(1.6) * strong - 1)
-    result -= above * np.clip((strong - np.float32(0.02)) / np.float32(0.05), 0, 1)
-    below = np.maximum(0, np.float32(0.06) - (result - strong))
-    result += below * np.clip(strong / np.float32(0.05), 0, 1)
-    return result + _limited(drawn * more)
+
+    def with_room(lights: Picture, drawn: Picture, squares: Picture) -> Picture:
+        strong = _root(squares)
+        share = np.clip((strong - np.float32(_RELIEF)) / np.float32(_RELIEF_RANGE), 0, 1)
+        more = 1 + np.float32(0.7) * share * np.clip((lights - np.float32(0.5)) / np.float32(0.3), 0, 1)
+        result = lights - np.float32(_RELIEF_INK) * share * np.maximum(0, lights - np.float32(_LIGHT))
+        strong = strong * more
+        above = np.maximum(0, result + np.float32(1.6) * strong - 1)
+        result -= above * np.clip((strong - np.float32(0.02)) / np.float32(0.05), 0, 1)
+        below = np.maximum(0, np.float32(0.06) - (result - strong))
+        result += below * np.clip(strong / np.float32(0.05), 0, 1)
+        return result + _limited(drawn * more)
+
+    return by_rows(with_room, lights, drawn, blurred(drawn * drawn, 5.0 * pt, threads), threads=threads)
 
 
 def _limited(values: Picture) -> Picture:

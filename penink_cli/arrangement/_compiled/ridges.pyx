@@ -47,6 +47,39 @@ def smooth(const float[:, ::1] grey, const double[::1] weights, float[:, ::1] ou
         free(wide)
 
 
+def unevenness(const float[:, ::1] grey, float scale, long long[::1] counts) -> None:
+    """Count how large the responses to [[1, -2, 1], [-2, 4, -2], [1, -2, 1]] are, times scale, rounded down.
+
+    counts: (n,) is added to; what is greater counts with the last.
+    """
+    cdef Py_ssize_t h = grey.shape[0], w = grey.shape[1], n = counts.shape[0], i, j, k
+    cdef const float* row
+    cdef float* lines = NULL  # three rows of what is across, and one of responses
+    cdef float* above
+    cdef float* here
+    cdef float* below
+    cdef float* size
+    try:
+        lines = <float*>room(4 * w, sizeof(float))
+        size = lines + 3 * w
+        with nogil:
+            for i in range(h):
+                row = &grey[i, 0]
+                below = lines + w * (i % 3)
+                for j in range(1, w - 1):
+                    below[j] = row[j - 1] - (row[j] + row[j]) + row[j + 1]  # 2.0 would be a double
+                if i < 2:
+                    continue
+                above, here = lines + w * ((i - 2) % 3), lines + w * ((i - 1) % 3)
+                for j in range(1, w - 1):
+                    size[j] = fabsf(above[j] - (here[j] + here[j]) + below[j]) * scale
+                for j in range(1, w - 1):
+                    k = <Py_ssize_t>size[j]
+                    counts[k if k < n else n - 1] += 1
+    finally:
+        free(lines)
+
+
 def ridges(const float[:, ::1] grey, float least, unsigned char[:, ::1] found) -> int:
     """Mark the pixels, none on the border, whose gradient is the steepest on its own way: how many there are.
 

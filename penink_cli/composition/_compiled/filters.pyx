@@ -154,3 +154,39 @@ def enlarge(const float[:, ::1] values, float[:, ::1] out, Py_ssize_t top, Py_ss
     free(mixed)
     free(shares)
     free(left)
+
+
+def look_up(
+    const float[:, :] values, const float[::1] table, const float[::1] rising, float low, float scale,
+    float[:, ::1] out, Py_ssize_t top, Py_ssize_t bottom
+):
+    """Rows top … bottom of out (h, w): what table (n + 1,) says of values, linear in between, constant beyond its ends.
+
+    rising: (n + 1,) how much is between each number of the table and the next. low: the first one's; scale: steps a
+    unit.
+    """
+    cdef Py_ssize_t y, x, i
+    cdef float at, most = <float>(table.shape[0] - 1)
+    with nogil:
+        for y in range(top, bottom):
+            for x in range(values.shape[1]):
+                at = (values[y, x] - low) * scale
+                at = (at if at < most else most) if at > 0.0 else <float>0.0
+                i = <Py_ssize_t>at
+                out[y, x] = (at - i) * rising[i] + table[i]
+
+
+def histogram(const float[:, ::1] values, const float[:, ::1] weights, long long[::1] counts):
+    """Add up how many 4096ths of weights (h, w), or of ones where those are empty, values have at each of n steps.
+
+    Values from 0 to 1, what is beyond with the first and the last; weights rounded half up.
+    """
+    cdef Py_ssize_t y, x, i, n = counts.shape[0]
+    cdef float steps = <float>n
+    cdef bint weighted = weights.shape[0] > 0
+    with nogil:
+        for y in range(values.shape[0]):
+            for x in range(values.shape[1]):
+                i = <Py_ssize_t>(values[y, x] * steps)
+                i = 0 if i < 0 else (n - 1 if i >= n else i)
+                counts[i] += <long long>(weights[y, x] * <float>4096.0 + <float>0.5) if weighted else 4096

@@ -19,3 +19,17 @@ def kept(
             difference = fabs(grey[one[k]] - grey[other[k]])
             total += <long long>((difference if difference < wanted[k] else wanted[k]) * whole)
     return total
+
+
+def mix(
+    const float[:, :, ::1] colours, float red, float green, float blue, float[:, ::1] out,
+    Py_ssize_t top, Py_ssize_t bottom
+) -> None:
+    """Rows top … bottom of out (h, w): the sums of colours (h, w, 3) by these weights, from 0 to 1."""
+    cdef Py_ssize_t y, x
+    cdef float v
+    with nogil:
+        for y in range(top, bottom):
+            for x in range(out.shape[1]):
+                v = red * colours[y, x, 0] + green * colours[y, x, 1] + blue * colours[y, x, 2]
+                out[y, x] = (v if v < 1.0 else <float>1.0) if v > 0.0 else <float>0.0
