@@ -69,13 +69,19 @@ def raw(listings: bytes) -> bytes:
     return images
 
 
-def photo(scratched: bool = False) -> bytes:
-    """A dark disc on a gradient; and if it is scratched, a line aslant across all of it, whose middle is black."""
+def photo() -> bytes:
+    """A dark disc on a gradient."""
     i, j = np.mgrid[:16, :24]
     disc = (10 * j - 117) ** 2 + (10 * i - 73) ** 2 < 52**2
-    values = np.where(disc, 60, 120 + 5 * j)
-    scratch = np.maximum(0, 5 - abs(3 * j - 2 * i - 30)) * 20
-    return listing(np.maximum(0, values - scratch) if scratched else values)
+    return listing(np.where(disc, 60, 120 + 5 * j))
+
+
+def whisker() -> bytes:
+    """A dark line, bent, two pixels wide in the middle and none at its ends, on a gradient."""
+    i, j = np.mgrid[:16, :24]
+    off = abs(40 * i - (j - 12) ** 2 - 240)  # fortieths of a pixel
+    wide = np.maximum(0, 40 - 4 * abs(j - 12))
+    return listing(120 + 5 * j - np.clip(3 * (wide + 20 - off), 0, 110))
 
 
 def compare(name: str, found: bytes) -> None:
@@ -94,7 +100,7 @@ def files(tmp_path):
 
 @pytest.mark.parametrize("name", STAGES)
 def test_a_stage_writes_its_golden_file(name, penink, request, files):
-    done = penink(*STAGES[name].split(), input=photo(scratched=name == "lines.json"), cwd=files)
+    done = penink(*STAGES[name].split(), input=whisker() if name == "lines.json" else photo(), cwd=files)
     assert done.returncode == 0 and not done.stderr, done.stderr
     found = readable(done.stdout)
     assert len(found) < 20_000, "too long to be read"
