@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from penink_cli.blasting import curves, rims, sweep, walls
 from penink_cli.blasting.curve_fitting import over_chords
-from penink_cli.blasting.sheet import SIGMA_PT, Cells, Sheet
+from penink_cli.blasting.sheet import SIGMA_PT, Cells, Sheet, Terms
 from penink_cli.ground.model import Floats, HatchLayer, Ints, Strokes
 
 #: The distance, about, at which curves are sampled, points.
@@ -42,8 +42,9 @@ class Candidates:
     batches: list[Ints]
     box: tuple[float, float, float, float]
 
-    def drawn(self, runs: Ints, moved: Floats) -> Strokes:
-        """The runs of candidates that were drawn, as strokes (of a sheet of no size)."""
+    def placed(self, sheet: Sheet, terms: Terms, enters: Floats | None = None) -> Strokes:
+        """What is worth drawing of them is drawn, see `Sheet.place`: as strokes (of a sheet of no size)."""
+        runs, moved = sheet.place(self.lines, self.widths, self.batches, terms, self.bounded, enters)
         start, end = runs[:, 1].astype(np.float64), runs[:, 2].astype(np.float64)
         points, first = curves.cut(self.points, self.first, self.pieces, runs[:, 0], start, end)
         # A stroke that was moved sideways may have left the frame.

@@ -23,15 +23,13 @@ from penink_cli.blasting import candidates, curves, thin, walls
 from penink_cli.blasting.curve_fitting import over_chords
 from penink_cli.blasting.form import Form
 from penink_cli.blasting.shares import ALONE, shares
-from penink_cli.blasting.sheet import Cells, Sheet
+from penink_cli.blasting.sheet import Cells, Sheet, Terms
 from penink_cli.blasting.stroke_set import StrokeSet
 from penink_cli.ground.device import MEAN
 from penink_cli.ground.model import EdgeList, Floats, HatchLayer, Strokes
 
-#: The gain, in cells × tone, below which a run of ink is not drawn.
-RUN_COST = 0.25
-#: This part of the tone counts as due besides, so that noise around a well-placed stroke does not cut it.
-LENIENCE = 0.1
+#: Of the lines that are laid. The lenience: noise around a well-placed stroke is not to cut it.
+LAID = Terms(cost=0.25, lenience=0.1)
 #: Below this tone less of the error is fed back: there a single line is too dark where it is and too light beside it.
 SINGLE = 0.06
 #: Rounds of the loop. The first SWEEPS lay the lines anew, the others only trim them.
@@ -52,24 +50,23 @@ WIDER, BY_ITSELF = 2, 0.25
 FEATHER = 0.1
 #: Fine strokes: their width in parts of the pen's, the least in dots of the device, and their length, points.
 FINE, FINE_DOTS, FINE_PT = 0.5, 1.5, 44.0
-#: A fine stroke must pass a place where FINE_LEAST times its own ink is due, and counts its own ink FINE_CAUTION times:
-#: a little too light is better than doubled lines.
-FINE_LEAST, FINE_CAUTION = 0.4, 1.6
+#: The distance of the rows of fine strokes tried, points.
+FINE_ROW_PT = 1.5
+#: A fine stroke must pass a place where FINE_LEAST times its own ink is due.
+FINE_LEAST = 0.4
 #: By how much of tone the eye must see the place too light.
 FINE_SEEN = 0.015
-#: The gain below which a fine stroke is not drawn, cells × tone, and its least length, points.
-FINE_COST, FINE_SHORTEST_PT = 0.02, 20.5
-#: The same of the short strokes that fill what is too light along a field, and how many times they count their own ink.
-FILLER_COST, FILLER_CAUTION, FILLER_SHORTEST_PT = 0.05, 1.3, 4.0
-#: Along the frame strokes are drawn where the tone is above this; how many times they count their own ink.
-RIM_TONE, RIM_CAUTION = 0.85, 4.0
-#: Strokes along strong edges, beside lines that follow a field: the tone from which on there are any, and how many
-#: times they count their own ink.
-EDGE_TONE, EDGE_CAUTION = 0.5, 1.5
+#: Fine strokes count their own ink more than once: a little too light is better than doubled lines. The moves, in rows,
+#: find the middle of a gap.
+FINE_STROKES = Terms(cost=0.02, caution=1.6, shortest_pt=20.5, shifts=(-0.33, 0.33, 0.0), spacing_pt=FINE_ROW_PT)
+#: The short strokes that fill what is too light along a field.
+FILLERS = Terms(cost=0.05, caution=1.3, shortest_pt=4.0)
+#: Strokes along the frame, and the tone above which there are any.
+RIM, RIM_TONE = Terms(cost=0.02, caution=4.0, shortest_pt=candidates.SHORTEST_RIM_PT), 0.85
+#: Strokes along strong edges, beside lines that follow a field, and the tone above which there are any.
+ALONG_EDGES, EDGE_TONE = Terms(cost=0.02, caution=1.5, shortest_pt=candidates.SHORTEST_RIM_PT), 0.5
 #: Strokes along a field are fitted anew: the tolerance, and the distance of the points fitted to, points.
 REFIT_PT, REFIT_STEP_PT = 0.15, 2.0
-#: The distance of the rows of fine strokes tried, points, and the moves across, in rows, that find the middle of a gap.
-FINE_ROW_PT, FINE_MOVES = 1.5, (-0.33, 0.33, 0.0)
 #: The part by which pressure widens or narrows a stroke at the most, and the rounds in which that is found.
 PRESSURE, PRESSES = 0.22, 3
 
@@ -131,11 +128,7 @@ def hatch_sheet(
             sheet.residual = wide - drawn_wide
         strokes = [along]
         for part in laid:
-            runs, moved = sheet.place(
-                part.lines, part.widths, part.batches, walls=part.bounded, cost=RUN_COST, lenience=LENIENCE,
-                enters=np.zeros(len(part.widths)),
-            )  # fmt: skip
-            strokes.append(part.drawn(runs, moved))
+            strokes.append(part.placed(sheet, LAID, enters=np.zeros(len(part.widths))))
         error = sheet.error()
         size = float(np.mean(np.square(error, dtype=np.float64)))
         if best is None or size < best[0]:
@@ -212,19 +205,11 @@ def fine_strokes(
     """
     sheet.owe(sheet.tone)
     rim = candidates.rim(sheet, min(pens), borders, RIM_TONE, seed)
-    runs, moved = sheet.place(
-        rim.lines, rim.widths, rim.batches, walls=rim.bounded, cost=FINE_COST, caution=RIM_CAUTION,
-        shortest_pt=candidates.SHORTEST_RIM_PT,
-    )  # fmt: skip
-    out = [rim.drawn(runs, moved)]
+    out = [rim.placed(sheet, RIM)]
     if form:
-        part = candidates.along_edges(sheet, min(pens), borders, EDGE_TONE)
-        runs, moved = sheet.place(
-            part.lines, part.widths, part.batches, walls=part.bounded, cost=FINE_COST, caution=EDGE_CAUTION,
-            shortest_pt=candidates.SHORTEST_RIM_PT,
-        )  # fmt: skip
-        out.append(part.drawn(runs, moved))
+        out.append(candidates.along_edges(sheet, min(pens), borders, EDGE_TONE).placed(sheet, ALONG_EDGES))
     seen = sheet.spread(sheet.error()) - np.float32(FINE_SEEN)
+    terms = replace(FINE_STROKES, shortest_pt=form.fine_shortest_pt) if form else FINE_STROKES
     for i, (layer, pen) in enumerate(zip(layers, pens)):
         if layer.spacing_pt > 0:
             continue  # what fills a gap would lie closer than it may
@@ -234,12 +219,7 @@ def fine_strokes(
             part = candidates.lattice(
                 sheet, layer, pen, gain_pt, FINE_PT, FINE_ROW_PT, FINE_LEAST, seen, borders, seed * 64 + i
             )
-        runs, moved = sheet.place(
-            part.lines, part.widths, part.batches, walls=part.bounded, cost=FINE_COST, caution=FINE_CAUTION,
-            shifts=FINE_MOVES, spacing_pt=np.full(len(part.widths), FINE_ROW_PT),
-            shortest_pt=form.fine_shortest_pt if form else FINE_SHORTEST_PT,
-        )  # fmt: skip
-        out.append(part.drawn(runs, moved))
+        out.append(part.placed(sheet, terms))
     return out
 
 
@@ -256,11 +236,7 @@ def fillers(sheet: Sheet, form: Form, pens: list[float], seed: int) -> list[Stro
         sheet.owe(sheet.tone)
         seen = sheet.spread(sheet.error()) - np.float32(form.filler_seen)
         part = form.fillers(i, pen, seen, seed * 64 + i)
-        runs, moved = sheet.place(
-            part.lines, part.widths, part.batches, walls=part.bounded, cost=FILLER_COST, caution=FILLER_CAUTION,
-            shortest_pt=FILLER_SHORTEST_PT,
-        )  # fmt: skip
-        out.append(part.drawn(runs, moved))
+        out.append(part.placed(sheet, FILLERS))
     return out
 
 

@@ -19,6 +19,7 @@ This module alone imports the compiled kernels `ink`, `placing`, `press` and `sw
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
@@ -47,6 +48,34 @@ STEP = 0.25
 #: Candidates are tried in blocks of this size, those of every second block at the same time,
 #: so no stroke longer than this less the kernel may be tried in parallel.
 BLOCK_PT = 144.0
+
+
+#: Runs that one polyline is drawn in at the most.
+MOST_RUNS = 4
+
+
+@dataclass(frozen=True)
+class Terms:
+    """On what terms a polyline is drawn: normally the best runs of it.
+
+    whole: all of it, if that lowers the squared error. strict: all of it, unless that makes any place darker than it
+    is due: the paper's rule.
+    cost: what a run must gain, in cells × tone. caution: how many times the stroke's own ink counts
+    against it; 1 is where the squared error is least. lenience: the part of the tone that is taken to be due
+    besides, so that mere noise cuts no stroke.
+    shortest_pt: the least length of a run; shortest_wall_pt: of one that ends at a wall.
+    shifts: sideways moves to try, in units of spacing_pt.
+    """
+
+    whole: bool = False
+    strict: bool = False
+    cost: float = 0.0
+    caution: float = 1.0
+    lenience: float = 0.0
+    shortest_pt: float = 7.0
+    shortest_wall_pt: float = 2.0
+    shifts: tuple[float, ...] = (0.0,)
+    spacing_pt: float = 0.0
 
 
 def halve(values: Cells) -> Cells:
@@ -159,28 +188,15 @@ class Sheet:
         lines: Polylines,
         widths: Floats,
         batches: Sequence[Ints],
-        *,
+        terms: Terms,
         walls: npt.NDArray[np.uint8] | None = None,
-        shifts: Sequence[float] = (0.0,),
-        spacing_pt: Floats | None = None,
-        whole: bool = False,
-        strict: bool = False,
-        cost: float = 0.0,
-        caution: float = 1.0,
-        lenience: float = 0.0,
         enters: Floats | None = None,
-        shortest_pt: float = 7.0,
-        shortest_wall_pt: float = 2.0,
-        most: int = 4,
     ) -> tuple[Ints, Floats]:
         """Try polylines, batch by batch, and draw of each what is worth drawing.
 
         batches: indices of polylines, in the order in which they are tried.
         walls: (n,) bit 0: the polyline's start is at a wall (an edge, the frame), bit 1: its end.
-        shifts: sideways moves to try, in units of spacing_pt (n,).
-        cost: what a run must gain, in cells × tone. caution: how many times the stroke's own ink counts
-        against it; 1 is where the squared error is least. lenience: the part of the tone that is taken to be due
-        besides, so that mere noise cuts no stroke. enters: (n,) the tone at which each is known to belong where it is
+        enters: (n,) the tone at which each is known to belong where it is
         light: there the low-pass is too narrow to tell. Returns the runs (r, 3): polyline, first and last of
         its points, and how far each run was moved (r, 2) in points.
 
@@ -190,19 +206,15 @@ class Sheet:
         n = len(widths)
         points = np.ascontiguousarray(lines.points * self.scale)
         walls = np.zeros(n, np.uint8) if walls is None else walls
-        spacing = np.zeros(n) if spacing_pt is None else spacing_pt * self.pitch
         belongs = np.full(n, np.inf) if enters is None else np.ascontiguousarray(enters)
-        runs = np.full((n, most, 2), -1, np.int64)
+        runs = np.full((n, 1 if terms.whole or terms.strict else MOST_RUNS, 2), -1, np.int64)
         moved = np.zeros((n, 2))
         against = _placing.Target(self.bits, self.residual, self.tone, self.weight, self.low_pass, self.gain)
-        tried = _placing.Tried(points, lines.first, widths * self.pitch, walls, spacing, belongs)
-        terms = _placing.Terms(
-            whole, strict, cost, caution, lenience, shortest_pt * self.pitch, shortest_wall_pt * self.pitch,
-            np.asarray(shifts, np.float64),
-        )  # fmt: skip
+        tried = _placing.Tried(points, lines.first, widths * self.pitch, walls, belongs)
+        asked = _placing.Terms(terms, self.pitch)
 
         def run(order: Ints) -> None:
-            _placing.place(against, tried, terms, order, runs, moved)
+            _placing.place(against, tried, asked, order, runs, moved)
 
         block = self._blocks(lines)
         for batch in batches:
@@ -224,7 +236,7 @@ class Sheet:
         points = np.ascontiguousarray(lines.points * self.scale)
         pressed = np.ascontiguousarray(widths * self.pitch)
         low, high = np.ascontiguousarray(lightest * self.pitch), np.ascontiguousarray(heaviest * self.pitch)
-        fresh, resistance = np.zeros(len(points), np.float32), np.full(len(widths), -1.0)
+        drawn = _press.Drawn(points, lines.first, pressed, low, high)
         groups = coloured(order, self._blocks(lines)[order])
         for turn in range(rounds):
             if turn:
@@ -232,14 +244,9 @@ class Sheet:
                 self.paint(lines, pressed / self.pitch)
             residual = self._eye(halve(self.tone - self.ink))
 
-            def run(some: Ints, residual: Cells = residual) -> None:
-                _press.press(
-                    self.bits, self.columns, self.gain, residual, self._coarse_tone, self._eye.kernel,
-                    self._eye.step, self._eye.profile, points, lines.first, pressed, low, high, some, fresh, resistance,
-                )  # fmt: skip
-
+            seen = _press.Seen(self.bits, self.columns, self.gain, residual, self._coarse_tone, self._eye)
             for group in groups:
-                self.each(run, group)
+                self.each(partial(_press.press, seen, drawn), group)
         return pressed / self.pitch
 
     def _blocks(self, lines: Polylines) -> Ints:

@@ -8,16 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from penink_cli.blasting import curves, walls
-from penink_cli.blasting.sheet import SIGMA_PT, Cells, Sheet
+from penink_cli.blasting.sheet import SIGMA_PT, Cells, Sheet, Terms
 from penink_cli.ground.median import median
 from penink_cli.ground.model import EdgeList, Floats, Ints, Strokes, Texture
 
-#: The gain, in cells × tone, below which a run of ink is not drawn.
-RUN_COST = 0.3
+#: Strokes that may be trimmed: the gain below which a run is not drawn, and the sideways moves that are tried.
+TRIMMED = Terms(cost=0.3, shifts=(-0.5, 0.5, 0.0), spacing_pt=1.0)
 #: Rounds of feeding the error back.
 ROUNDS = 4
-#: Sideways moves that are tried, points.
-MOVES = (-0.5, 0.5, 0.0)
 #: The distance at which strokes are sampled, points.
 STEP_PT = 1.5
 #: Copies of strokes that are laid out at a time, so that memory stays bounded on any sheet.
@@ -196,7 +194,8 @@ def _place(
 ) -> list[Strokes]:
     """One pass over all copies in order of priority; strokes that may be trimmed end at the borders."""
     out = []
-    plain = strict or texture.whole
+    plain = Terms(strict=strict, whole=texture.whole)
+    terms = plain if strict or texture.whole else TRIMMED
     dotted = len(texture.strokes.points) == len(texture.strokes)
     for part in copies(texture, enters, sheet, seed, 2.0 if strict else SLACK_DOTS if dotted else SLACK, pen):
         points, first, widths = part.points, part.first, part.widths
@@ -219,19 +218,8 @@ def _place(
         if n == 0:
             continue
         batches = [b for b in np.array_split(np.arange(n), max(1, n // 4096)) if len(b)]
-        runs, moved = sheet.place(
-            lines,
-            widths,
-            batches,
-            walls=bounded,
-            strict=strict,
-            whole=texture.whole,
-            enters=None if strict else part.enters[cuts.curve],
-            cost=0.0 if plain else RUN_COST,
-            shifts=(0.0,) if plain else MOVES,
-            spacing_pt=np.ones(n),
-            most=1 if plain else 4,
-        )
+        belongs = None if strict else part.enters[cuts.curve]
+        runs, moved = sheet.place(lines, widths, batches, terms, bounded, belongs)
         start, end = runs[:, 1].astype(np.float64), runs[:, 2].astype(np.float64)
         points, first = curves.cut(points, first, pieces, runs[:, 0], start, end)
         # a stroke moved sideways may have left the frame by as much

@@ -8,7 +8,7 @@ import pytest
 from penink_cli.blasting._compiled import due
 from penink_cli.blasting.curves import Polylines
 from penink_cli.blasting.low_pass import LowPass
-from penink_cli.blasting.sheet import CELL_PT, Sheet, halve, resample
+from penink_cli.blasting.sheet import CELL_PT, Sheet, Terms, halve, resample
 from penink_cli.ground.device import widened
 from penink_cli.ground.model import Strokes
 
@@ -63,7 +63,7 @@ def test_what_is_due_is_kept_up_to_date():
     sheet.owe(sheet.tone)
     lines = Polylines(rng.uniform(5, 75, (40, 1, 2)).repeat(30, 1).reshape(-1, 2), np.arange(41) * 30)
     lines = Polylines(lines.points + np.tile(np.linspace(-10, 10, 30), 40)[:, None], lines.first)
-    sheet.place(lines, np.full(40, 0.5), [np.arange(40)])
+    sheet.place(lines, np.full(40, 0.5), [np.arange(40)], Terms())
     kept = sheet.residual.copy()
     sheet.owe(sheet.tone)
     assert np.abs(kept - sheet.residual).max() < 0.04
@@ -103,7 +103,7 @@ def test_wider_vectors_change_no_byte():
         along = np.linspace(0, 1, 60)[:, None]
         points = np.concatenate([(3, 3) + along * (70, 45), (80, 2) + along * (-60, 50)])
         lines = Polylines(points, np.array([0, 60, 120]))
-        runs, moved = sheet.place(lines, np.array([1.0, 1.5]), [np.arange(2)])
+        runs, moved = sheet.place(lines, np.array([1.0, 1.5]), [np.arange(2)], Terms())
         results.append((sheet.residual.tobytes(), runs.tolist(), moved.tolist()))
     assert results[0] == results[1] and len(results[0][1]) > 1
 
@@ -115,7 +115,7 @@ def test_no_ink_is_credited_across_a_strong_step():
     sheet.owe(sheet.tone)
     assert np.abs(sheet.residual[:, :20]).max() < 1e-6
     line = np.array([[21.0, 0.0], [21.0, 40]]) * CELL_PT
-    runs, _ = sheet.place(Polylines(line, np.array([0, 2])), np.array([1.0]), [np.arange(1)], whole=True)
+    runs, _ = sheet.place(Polylines(line, np.array([0, 2])), np.array([1.0]), [np.arange(1)], Terms(whole=True))
     assert len(runs) == 1 and sheet.residual[:, 21].max() < 0.9
     assert np.abs(sheet.residual[:, :20]).max() < 1e-6
 

@@ -57,51 +57,42 @@ cdef class Target:
 
 cdef class Tried:
     """Polylines that may be drawn: points (p, 2), and of each where it begins, its width, bit 0 and 1 for a wall at its
-    start and end, the unit of its sideways moves, and the tone at which it is known to belong in a light place.
+    start and end, and the tone at which it is known to belong in a light place.
     """
 
     cdef double[:, ::1] points
     cdef long long[::1] first
-    cdef double[::1] widths, spacing, enters
+    cdef double[::1] widths, enters
     cdef unsigned char[::1] walls
 
     def __init__(
         self, double[:, ::1] points, long long[::1] first, double[::1] widths, unsigned char[::1] walls,
-        double[::1] spacing, double[::1] enters,
+        double[::1] enters,
     ) -> None:
         self.points = points
         self.first = first
         self.widths = widths
         self.walls = walls
-        self.spacing = spacing
         self.enters = enters
 
 
 cdef class Terms:
-    """What is worth drawing: normally the best runs; if whole, all of a polyline if that lowers the squared error; if
-    strict, all of it unless that makes any place darker than it is due: the paper's rule.
-
-    cost: what a run must gain, in cells × tone. caution: what a stroke adds itself counts so many times: 1 is where the
-    squared error is least. lenience: this part of the tone wanted is taken to be due besides, so that mere noise cuts
-    no stroke. shortest: of a run, and of one that ends at a wall, subpixels. shifts: the sideways moves tried.
-    """
+    """`sheet.Terms`, its lengths in subpixels: pitch of them are a point."""
 
     cdef bint whole, strict
-    cdef double cost, caution, lenience, shortest, shortest_wall
+    cdef double cost, caution, lenience, shortest, shortest_wall, spacing
     cdef double[::1] shifts
 
-    def __init__(
-        self, bint whole, bint strict, double cost, double caution, double lenience, double shortest,
-        double shortest_wall, double[::1] shifts,
-    ) -> None:
-        self.whole = whole
-        self.strict = strict
-        self.cost = cost
-        self.caution = caution
-        self.lenience = lenience
-        self.shortest = shortest
-        self.shortest_wall = shortest_wall
-        self.shifts = shifts
+    def __init__(self, terms, double pitch) -> None:
+        self.whole = terms.whole
+        self.strict = terms.strict
+        self.cost = terms.cost
+        self.caution = terms.caution
+        self.lenience = terms.lenience
+        self.shortest = terms.shortest_pt * pitch
+        self.shortest_wall = terms.shortest_wall_pt * pitch
+        self.spacing = terms.spacing_pt * pitch
+        self.shifts = np.asarray(terms.shifts, np.float64)
 
 
 cdef class Trial:
@@ -303,8 +294,8 @@ def place(
             by = 0.0
             m = -1
             for j in range(terms.shifts.shape[0]):
-                trial.ox = nx * terms.shifts[j] * lines.spacing[i]
-                trial.oy = ny * terms.shifts[j] * lines.spacing[i]
+                trial.ox = nx * terms.shifts[j] * terms.spacing
+                trial.oy = ny * terms.shifts[j] * terms.spacing
                 n = trial.gains(target)
                 if not whole and not strict:
                     value = trial.runs(n, least, least_wall)
