@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import partial
 from itertools import pairwise
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -172,6 +172,20 @@ def _plan(
     return _Enlargement(planes.astype(real, order="C"), paths, x, y, radius, only_b, window, real, stored, maxval)
 
 
+class TileAxis(NamedTuple):
+    """What `render.retouch` takes of one axis, the columns of tiles or their rows.
+
+    where: (n,) positions of pixels, sample units; of columns (n + 8,). cubic, bspline: taps, (4, n + 8) of columns, (n,
+    4) of rows. cell, first: (t,), (t + 1,) the cell of each tile and its first pixel.
+    """
+
+    where: Floats
+    cubic: Rows
+    bspline: Rows
+    cell: npt.NDArray[np.intc]
+    first: npt.NDArray[np.intc]
+
+
 @dataclass(eq=False)
 class _Enlargement:
     """Scale 1 and above in both directions: the separable pass, and tiles of one cell where edges are near."""
@@ -195,9 +209,10 @@ class _Enlargement:
         self.x_taps = self._padded(x.taps.cubic), self._padded(x.taps.bspline)
         self.y_taps = y.taps.cubic.astype(self.real), y.taps.bspline.astype(self.real)
         if not self.paths.empty:
-            self.where = np.concatenate([x.taps.where, x.taps.where[-1:].repeat(TILE)])
+            where = np.concatenate([x.taps.where, x.taps.where[-1:].repeat(TILE)])
+            self.columns = TileAxis(where, *self.x_taps, x.cell, x.first)
             cell = np.concatenate([x.cell.repeat(np.diff(x.first)), x.cell[-1:].repeat(TILE)])
-            self.offset = ((self.where - cell) / float(self.real.type(self.radius))).astype(self.real)
+            self.offset = ((where - cell) / float(self.real.type(self.radius))).astype(self.real)
             self.workers: list[tuple[_search.Finder, _tile.Tile, _scratch.Scratch]] = []
         if self.paths.empty and x.count * y.count < SMALL:
             threads = 1
@@ -235,12 +250,11 @@ class _Enlargement:
                 worker = self._worker()
             finder, tile, scratch = worker
             finder.move(min(max(source, 0), h - 1), max(1, min(last, h)))
-            _render.retouch(
-                tile, scratch, self.planes, self.where, self.offset, *self.x_taps, x.cell, x.first,
+            down = TileAxis(
                 y.taps.where[begin:end], self.y_taps[0][begin:end], self.y_taps[1][begin:end],
                 y.cell[a:b], y.first[a : b + 1] - y.first[a],
-                out,
             )  # fmt: skip
+            _render.retouch(tile, scratch, self.planes, self.columns, self.offset, down, out)
             self.workers.append(worker)
         if self.into is not None:
             return out
@@ -289,11 +303,8 @@ class _Reduction:
         first, last = int(y.first[0]), int(y.first[-1]) + y.cubic.shape[1]
         out = np.empty((count, end - begin, len(x.where)))
         for plane, rows in zip(self.planes, out):
-            _weights.lattice(
-                self.paths.finder(rows=(min(max(first, 0), h - 1), max(1, min(last, h)))), plane,
-                x.where, x.first, x.cubic, x.bspline, y.where, y.first, y.cubic, y.bspline,
-                self.radius, self.only_b, np.empty(x.cubic.shape[1] * y.cubic.shape[1]), rows,
-            )  # fmt: skip
+            finder = self.paths.finder(rows=(min(max(first, 0), h - 1), max(1, min(last, h))))
+            _weights.Points(finder, x, y, self.radius, self.only_b).lattice(plane, rows)
         if self.stored == np.float64:
             return out
         return np.floor(np.clip(out, 0.0, self.maxval) + 0.5).astype(self.stored)

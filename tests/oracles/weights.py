@@ -55,10 +55,7 @@ def weights(
     workers = threading.count(threads)
 
     def run(begin: int, end: int) -> None:
-        _weights.scattered(
-            paths.finder(), points, x.first, x.cubic, x.bspline, y.first, y.cubic, y.bspline,
-            radius, only_b, begin, end, index, weight, starved,
-        )  # fmt: skip
+        _weights.Points(paths.finder(), x, y, radius, only_b).scattered(begin, end, index, weight, starved)
 
     size = max(4096, -(-n // (4 * workers)))
     threading.share(threading.ranges(run, n, size), workers)

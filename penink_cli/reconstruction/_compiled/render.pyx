@@ -78,18 +78,18 @@ cdef void lay_out_samples(Scratch scratch, Tile tile, real* samples) noexcept no
 
 
 def retouch(
-    Tile tile, Scratch scratch, real[:, :, ::1] samples, double[::1] x, real[::1] ux, real[:, ::1] xc, real[:, ::1] xb,
-    int[::1] x_cell, int[::1] x_begin, double[::1] y, real[:, ::1] yc, real[:, ::1] yb, int[::1] y_cell,
-    int[::1] y_begin, stored[:, :, ::1] out,
+    Tile tile, Scratch scratch, real[:, :, ::1] samples, columns, real[::1] ux, rows, stored[:, :, ::1] out
 ) -> None:
     """Reconstruct every tile that has an edge within the cells that its samples span.
 
     samples: (p, h, w), planes of one picture: what hides a sample, and how much it counts, is alike in all.
-    x: (n + 8,) positions of the columns, sample units; ux: the same relative to the cell and in units of the radius.
-    xc, xb: (4, n + 8) taps. x_cell, x_begin: (t,), (t + 1,) the cell and the first column of each tile, left to right.
-    For y likewise, but (rows, 4) taps. out: (p, rows, n).
+    columns, rows: `enlarge.TileAxis`. ux: positions of the columns relative to the cell and in units of the radius.
+    out: (p, rows, columns).
     """
     cdef Py_ssize_t a, b, c, k
+    cdef double[::1] x = columns.where, y = rows.where
+    cdef real[:, ::1] xc = columns.cubic, xb = columns.bspline, yc = rows.cubic, yb = rows.bspline
+    cdef int[::1] x_cell = columns.cell, x_begin = columns.first, y_cell = rows.cell, y_begin = rows.first
     with nogil:
         for a in range(y_cell.shape[0]):
             c = y_begin[a]
