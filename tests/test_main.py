@@ -213,6 +213,10 @@ def test_what_is_written_is_limited_as_what_is_read(penink, tmp_path):
     assert penink("enlarge", "--scale", "4", "--window", "0,0,40,2", "--max-pixels", "100", "-q", small).returncode == 0
     done = penink("enlarge", "--scale", "4000", small)
     assert done.returncode == 1 and b"40000 x 40000 pixels are asked for; at most 1000000000" in done.stderr
+    # a picture of strokes too: 144 dots an inch of the sheet pass, 150 of the picture do not
+    done = penink("draw", "--width", "2in", "--max-pixels", "85000", small, "-o", tmp_path / "drawn.png")
+    assert done.returncode == 1 and b"300 x 300 pixels; at most 85000 are allowed" in done.stderr
+    assert not (tmp_path / "drawn.png").exists()
 
 
 def test_threads_are_as_many_as_asked_for_everywhere(tmp_path, monkeypatch):

@@ -85,7 +85,7 @@ def detect_edges(
         settle_junctions(arrangement, grey, step, lens, noise, blur, seen_at)
 
     edges, slopes = _arrange(points, chains, join_ends(points, chains, blur), tolerance, steepness, settle)
-    measured = strengths(grey, edges, lens)
+    measured = strengths(grey, edges, lens, noise)
     return replace(edges, strength=np.where(measured < 0, slopes, measured))
 
 

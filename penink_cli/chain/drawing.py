@@ -47,6 +47,8 @@ def draw_one(
         limit = max_pixels if "max_pixels" in given else None
         say = reporter(options["verbose"])
         chain = Chain(bench, taken, options["threads"], limit, say, lambda: advance(1), kept)
+        if file is None:
+            chain.from_standard_input("photo")
         device_dpi = given.get("device_dpi", None if on_screen(request.ending) else PRINTER_DPI)
         job = Job(chain, stages, given, width, rows / columns, request.ending, device_dpi, inks)
         _draw(job, file, shape, output, request.page)

@@ -6,11 +6,13 @@ else made them. What one filter hands to the next lies on a workbench, in no fil
 
 from __future__ import annotations
 
+import io
 import shlex
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 
 import click
+import numpy as np
 
 from penink_cli.chain.kept import Kept
 from penink_cli.ground import streams
@@ -30,6 +32,7 @@ class Chain:
     ):  # fmt: skip
         self._bench, self._say, self._step, self._kept = bench, say, step, kept
         self._taken = {path for path in taken if path is not None}
+        self._standard_input = "-"
         self._common = {"quiet": "--quiet"}
         if max_pixels is not None:
             self._common["max_pixels"] = f"--max-pixels={max_pixels}"
@@ -42,6 +45,11 @@ class Chain:
             wanted = f"drawing-{wanted}"
         self._bench.setdefault(wanted, b"")
         return wanted
+
+    def from_standard_input(self, wanted: str) -> None:
+        """What filters read as `-` comes from standard input, which has it but once: by hand it is put in a file."""
+        self._standard_input = self.name(wanted)
+        self._say(f"cat > {shlex.quote(self._standard_input)}")
 
     def put(self, name: str, text: str) -> None:
         """A file that no filter has written."""
@@ -84,7 +92,8 @@ class Chain:
             if kept:
                 for name in names:
                     kept.keep((*call, name), read, self._bench[name])
-        self._say(shlex.join(["penink", *call, *target]))
+        by_hand = (self._standard_input if word == "-" else word for word in call)
+        self._say(shlex.join(["penink", *by_hand, *target]))
         self._step()
         return True
 
@@ -101,7 +110,11 @@ class Chain:
         whole = Strokes.joined(read_layers(names))
         with streams.writing(output, binary=False) as out:
             strokes.write(out, whole)
-        self._say(f"# the strokes of {' '.join(map(shlex.quote, names))} on one sheet")
+        head = io.BytesIO()
+        strokes.write(head, whole.taken(np.zeros(0, np.int64)))
+        files = " ".join(map(shlex.quote, names))
+        target = "" if output is None else f" > {shlex.quote(output)}"
+        self._say(f"{{ echo {shlex.quote(head.getvalue().decode().rstrip())}; tail -q -n +2 {files}; }}{target}")
 
 
 def _program() -> str:

@@ -4,15 +4,15 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.ndimage import gaussian_filter
 
+from penink_cli.arrangement import detection
 from penink_cli.arrangement.detection import detect_edges
 from tests.geometry.crossings import crossings
 
 
 def disc(size=64, centre=(31.3, 30.8), radius=17.4, low=0.2, high=0.8, blur=0.7):
     """A disc rendered with 8 x 8 points a pixel, then blurred."""
-    from scipy.ndimage import gaussian_filter
-
     at = (np.arange(size * 8) + 0.5) / 8
     inside = (at[None] - centre[0]) ** 2 + (at[:, None] - centre[1]) ** 2 < radius**2
     fine = np.where(inside, high, low)
@@ -32,8 +32,6 @@ def test_a_disc_is_one_ring_on_its_rim():
 def test_a_square_has_its_corners():
     fine = np.zeros((512, 512))
     fine[130:390, 122:402] = 1  # 64 pixels of 8 x 8 points
-    from scipy.ndimage import gaussian_filter
-
     grey = gaussian_filter(0.2 + 0.6 * fine.reshape(64, 8, 64, 8).mean(axis=(1, 3)), 1.0)
     edges = detect_edges(grey)
     for x in (122 / 8, 402 / 8):
@@ -72,3 +70,15 @@ def test_edges_never_cross(seed, high, tolerance):
     grey = random.random((random.integers(3, 40), random.integers(3, 40)))
     edges = detect_edges(grey, sigma=0.6, high=high, tolerance=tolerance, min_length=2)
     assert not crossings(edges)
+
+
+def test_a_new_vertex_has_no_strength_of_an_unrelated_place(monkeypatch):
+    """Where sides tell nothing slopes do; those of points that settling has placed are no points' that were found."""
+    monkeypatch.setattr(detection, "strengths", lambda grey, edges, *_: np.full(len(edges.edges), -1.0))
+    y, x = np.mgrid[:120, :240] + 0.5
+    weak = 0.5 + 0.06 * np.sign(np.sin(x / 9)) * np.sign(np.sin(y / 7)) * (x < 110)
+    strong = 0.9 * (np.hypot(x - 180, y - 60) < 40)
+    photo = gaussian_filter(np.where(x < 120, weak, strong), 0.7)
+    edges = detect_edges(photo.astype(np.float32), low=0.03, high=0.06)
+    left = edges.vertices[edges.edges][:, :, 0].max(axis=1) < 108
+    assert left.sum() > 40 and edges.strength[left].max() < 0.3 and edges.strength[~left].max() > 0.5

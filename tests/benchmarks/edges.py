@@ -1,6 +1,6 @@
 """Edges and samples measured: ``python -m tests.benchmarks.edges`` (about ten minutes; ``--quick`` half a minute).
 
-Or only some parts: ``python -m tests.benchmarks.edges positions strengths reaches trips heldout …``.
+Or only some parts: ``python -m tests.benchmarks.edges positions strengths noisy trips heldout …``.
 
 Positions of edges on rendered scenes; round trips photo → edges and samples reduced 4 × → photo; the
 grids that --auto chooses and what they take to store; a 12-megapixel photograph; hostile inputs.
@@ -14,6 +14,7 @@ import sys
 import tempfile
 import time
 from pathlib import Path
+from unittest import mock
 
 import numpy as np
 import skimage.data
@@ -24,6 +25,7 @@ from scipy.spatial import cKDTree
 from penink_cli.arrangement import detection
 from penink_cli.arrangement import strengths as steps
 from penink_cli.arrangement.detection import detect_edges
+from penink_cli.arrangement.gradient import noise_level
 from penink_cli.formats import archive, edge_list, illustration, pgm, strokes
 from penink_cli.geometry import validity
 from penink_cli.ground.model import EdgeList, GreyImage, Illustration, Layer, Strokes
@@ -350,12 +352,13 @@ def strengths(scenes: int) -> None:
     how many edges the scene's greys ½, 1 or 1½ pixels to both sides of the middle differ by more than .02 from what the
     nearest outline has. That is so near junctions, where one edge is nearest to another's outline. "unblamed" are those
     as told that are off where the truth has no such spread. "noise" is on how many a photo of the same scene with other
-    noise gives the same edge a strength that differs by more than .02; "noiseless", how many are off without noise.
+    noise gives the same edge a strength that differs by more than .02. The last two are off without noise: "noiseless"
+    on the same blurred photo, "sharp" on one that has no blur but its pixels'. What they have is in the edges.
     """
     print("strengths: part of the edges off by more than .02, the median and 95 % of how far off")
-    print("blur noise  edges       as told                samples           spread unblamed  noise noiseless")
+    print("blur noise  edges       as told                samples           spread unblamed  noise noiseless sharp")
     for blur, noise in ((0.5, 0), (0.6, 1), (1.0, 2), (1.5, 4)):
-        told, sampled, steady, again, clean = [], [], [], [], []
+        told, sampled, steady, again, clean, sharp = [], [], [], [], [], []
         for seed in range(scenes):
             scene = random_scene(seed)
             photo = scene.photo(blur, noise, seed).astype(np.float32)
@@ -369,34 +372,45 @@ def strengths(scenes: int) -> None:
             other = measured(scene.photo(blur, noise, seed + 1000).astype(np.float32), edges, blur)
             again.append(np.abs(other - measured(photo, edges, blur))[near])
             clean.append(np.abs(measured(scene.photo(blur, 0).astype(np.float32), edges, blur) - truth)[near])
+            sharp.append(np.abs(measured(scene.sharp().astype(np.float32), edges, 0.0) - truth)[near])
         columns = "".join(
             f"   {np.mean(far > 0.02):6.1%}{np.median(far):7.4f}{np.percentile(far, 95):7.4f}"
             for far in (np.concatenate(told), np.concatenate(sampled))
         )
         sure = np.concatenate(steady)
-        off, moved, left = (np.concatenate(far) > 0.02 for far in (told, again, clean))
+        off, moved, left, own = (np.concatenate(far) > 0.02 for far in (told, again, clean, sharp))
         columns += f"   {1 - sure.mean():6.1%}{np.mean(off & sure):9.1%}{moved.mean():7.1%}{left.mean():10.1%}"
-        print(f"{blur:4.1f}{noise:6}{sum(map(len, told)):7}{columns}", flush=True)
+        print(f"{blur:4.1f}{noise:6}{sum(map(len, told)):7}{columns}{own.mean():6.1%}", flush=True)
 
 
-def reaches() -> None:
-    """How far from an edge its strength may be read: on photographs at half size, noise added that was not there.
+WAYS: dict[str, dict[str, object]] = {
+    "near alone": {"_BEYOND": (4.5,), "_NEIGHBOURS": 0},
+    "8 px alone": {"_BEYOND": (8.0,), "_NEIGHBOURS": 0},
+    "and farther": {"_NEIGHBOURS": 0},
+    "neighbours": {"_BEYOND": (4.5,)},
+    "both": {},
+}
 
-    On scenes of planes a longer reach would average more noise out. On photographs it reads other things.
+
+def noisy() -> None:
+    """What averaging does to strengths on photographs: at half size, noise added that was not there.
+
+    Off from what the near pixels tell without the noise. A longer reach alone would average more noise out on scenes of
+    planes; on photographs it reads other things.
     """
-    print("reaches: part of the edges whose strength noise and reach move by more than .02, and by how much, RMS")
-    print("photograph   noise  " + "".join(f"{reach:>16.1f} px" for reach in (4.5, 6.0, 8.0)))
+    print("noisy: part of the edges off by more than .02, and by how much, RMS")
+    print("photograph   noise  " + "".join(f"{way:>19}" for way in WAYS))
     for name in ("camera", "coins", "astronaut", "coffee", "chelsea"):
         pixels = Image.fromarray((photograph(name) * 255).astype(np.uint8)).reduce(2)
         photo = np.asarray(pixels, np.float32)[:256, :256] / 255
-        for levels in (2, 4):
+        for levels in (0, 2, 4):
             noise = np.random.default_rng(1).normal(0, levels / 255, photo.shape)
             noisy = np.clip(photo + noise, 0, 1).astype(np.float32)
             edges = detect_edges(noisy)
-            own = measured(photo, edges, 0.8)
+            own = measured(photo, edges, 0.8, **WAYS["near alone"])
             line = ""
-            for reach in (4.5, 6.0, 8.0):
-                moved = np.abs(measured(noisy, edges, 0.8, reach) - own)[own >= 0]
+            for way in WAYS.values():
+                moved = np.abs(measured(noisy, edges, 0.8, **way) - own)[own >= 0]
                 line += f"{np.mean(moved > 0.02):11.1%}{np.sqrt(np.mean(moved * moved)):8.4f}"
             print(f"{name:12}{levels:6}  {line}", flush=True)
 
@@ -409,13 +423,10 @@ def direct_steps(scene: Scene, edges: EdgeList, off: float) -> np.ndarray:
     return np.abs(scene.truth(*((a + b) / 2 + aside).T) - scene.truth(*((a + b) / 2 - aside).T))
 
 
-def measured(photo: np.ndarray, edges: EdgeList, lens: float, reach: float = steps._BEYOND) -> np.ndarray:
-    """Strengths (m,) of given edges, from pixels at most `reach` beyond where a step is blurred."""
-    before, steps._BEYOND = steps._BEYOND, reach
-    try:
-        return steps.strengths(photo, edges, lens)
-    finally:
-        steps._BEYOND = before
+def measured(photo: np.ndarray, edges: EdgeList, lens: float, **way: object) -> np.ndarray:
+    """Strengths (m,) of given edges. way: constants of strengths.py that are to be other ones."""
+    with mock.patch.multiple(steps, **{"_ALIKE": steps._ALIKE, **way}):
+        return steps.strengths(photo, edges, lens, noise_level(photo))
 
 
 def sampled_steps(photo: np.ndarray, edges: EdgeList) -> np.ndarray:
@@ -432,7 +443,7 @@ def sampled_steps(photo: np.ndarray, edges: EdgeList) -> np.ndarray:
 PARTS = {
     "positions": positions,
     "strengths": strengths,
-    "reaches": reaches,
+    "noisy": noisy,
     "trips": round_trips,
     "heldout": held_out,
     "hostile": hostile,

@@ -134,6 +134,7 @@ CHAINS = {
     "d.png": ("--strength", "0.7", "--mix", "0.2,0.7,0.1", "--vignette", "20", "--no-outlines", "--threads", "3"),
     "d.penink": ("--target", "spot", "--texture", "stipple"),
     "d.html": ("--height", "1in", "--outlines"),
+    "d.jsonl": ("--style", "engraving"),
     "d.ps": ("--style", "fur", "--mask", "{mask}", "--directions", "{strokes}", "--no-lines", "--paper", "letter"),
 }
 
@@ -155,6 +156,21 @@ def test_every_option_of_draw_is_in_the_chain_it_prints(penink, photo, output, t
     again = subprocess.run(["bash", "-c", chain], cwd=tmp_path, env=environment(), capture_output=True, check=False)
     assert again.returncode == 0 and not again.stderr, again.stderr
     assert (tmp_path / output).read_bytes() == direct
+
+
+def test_a_photo_from_standard_input_is_a_file_in_the_chain_that_draw_prints(penink, photo, tmp_path):
+    """Several filters read it, and standard input has it but once."""
+    data = photo.read_bytes()
+    done = penink("draw", "--width", "2in", "--verbose", "-o", "d.svg", input=data, cwd=tmp_path)
+    assert done.returncode == 0 and done.stderr.startswith(b"cat > photo\n") and b" - " not in done.stderr
+    direct = (tmp_path / "d.svg").read_bytes()
+    chain = f'penink() {{ {shlex.quote(sys.executable)} -m penink_cli "$@"; }}\nset -euo pipefail\n'
+    chain += done.stderr.decode().replace("d.svg", "again.svg")
+    again = subprocess.run(
+        ["bash", "-c", chain], cwd=tmp_path, env=environment(), input=data, capture_output=True, check=False
+    )
+    assert again.returncode == 0 and not again.stderr, again.stderr
+    assert (tmp_path / "again.svg").read_bytes() == direct
 
 
 def test_files_of_the_user_s_are_not_those_of_the_chain(penink, photo, tmp_path):

@@ -22,7 +22,7 @@ cdef double _LEAST_LEFT = 0.25  # of a step, between mixtures: less is not magni
 cdef struct Station:
     # A place on an edge, and the window of pixels around: `tall` rows from `row` on, `wide` columns from `column` on.
     int edge, row, column, tall, wide
-    double x, y
+    double x, y, reach
     unsigned long long[49] right, down  # a bit for each pixel from which a step leads on and crosses no edge
     double[49] across, along  # weights of columns and rows: a pixel's is their product
 
@@ -30,6 +30,12 @@ cdef struct Station:
 cdef struct Side:
     double value  # grey at the station
     double mixed  # the part of it that is the other side's
+    double variance  # of the value, where a pixel's is 1
+
+
+cdef struct Step:
+    double grey  # of the side to the left of the edge less that to its right
+    double variance  # where a pixel's is 1; below 0 where one side has no pixel
 
 
 cdef class Photo:
@@ -39,7 +45,7 @@ cdef class Photo:
     met: (h, w) which steps between centres meet an edge, as of `geometry.walls`. ends: (m, 4) x, y, x, y, pixels.
     begin, items: which edges are near each square of `cell` pixels, `columns` of them in a row, as of
     `geometry.edge_index.lists`. mixed: (k,) the part of a pixel that is the other side's, by its distance in parts of
-    a pixel. clean: pixels farther from edges are trusted. reach: how far from a station they may be, at most MAX_REACH.
+    a pixel. clean: pixels farther from edges are trusted.
     """
 
     cdef float[:, ::1] grey, away
@@ -49,12 +55,11 @@ cdef class Photo:
     cdef Py_ssize_t columns
     cdef long long[::1] begin, items
     cdef double[::1] mixed
-    cdef double parts, clean, far, reach
+    cdef double parts, clean, far
 
     def __init__(
         self, float[:, ::1] grey, float[:, ::1] away, unsigned char[:, ::1] met, double[:, ::1] ends, double cell,
         Py_ssize_t columns, long long[::1] begin, long long[::1] items, double[::1] mixed, double parts, double clean,
-        double reach,
     ) -> None:
         self.grey = grey
         self.away = away
@@ -68,22 +73,22 @@ cdef class Photo:
         self.parts = parts
         self.far = (mixed.shape[0] - 1) / parts
         self.clean = clean
-        self.reach = reach
 
-    cdef void look(self, int edge, double t, Station* here) noexcept nogil:
-        """Stand at the part t of an edge."""
+    cdef void look(self, int edge, double t, double reach, Station* here) noexcept nogil:
+        """Stand at the part t of an edge and see so far, pixels."""
         cdef int r, c
         cdef double d
         cdef unsigned long long right, down, one = 1
         cdef unsigned char* met
-        cdef double spread = -4.5 / (self.reach * self.reach)  # a third of the reach is the weights' deviation
+        cdef double spread = -4.5 / (reach * reach)  # a third of the reach is the weights' deviation
         here.edge = edge
+        here.reach = reach
         here.x = self.ends[edge, 0] + t * (self.ends[edge, 2] - self.ends[edge, 0])
         here.y = self.ends[edge, 1] + t * (self.ends[edge, 3] - self.ends[edge, 1])
-        here.row = max(0, <int>floor(here.y - self.reach))
-        here.column = max(0, <int>floor(here.x - self.reach))
-        here.tall = min(<int>self.grey.shape[0], <int>floor(here.y + self.reach) + 1) - here.row
-        here.wide = min(<int>self.grey.shape[1], <int>floor(here.x + self.reach) + 1) - here.column
+        here.row = max(0, <int>floor(here.y - here.reach))
+        here.column = max(0, <int>floor(here.x - here.reach))
+        here.tall = min(<int>self.grey.shape[0], <int>floor(here.y + here.reach) + 1) - here.row
+        here.wide = min(<int>self.grey.shape[1], <int>floor(here.x + here.reach) + 1) - here.column
         for r in range(here.tall):
             d = here.row + r + 0.5 - here.y
             here.along[r] = exponential(spread * d * d)
@@ -160,7 +165,7 @@ cdef class Photo:
         cdef unsigned long long side, one = 1
         for r in range(here.tall):
             dy = here.row + r + 0.5 - here.y
-            high = sqrt(max(0.0, self.reach * self.reach - dy * dy))
+            high = sqrt(max(0.0, here.reach * here.reach - dy * dy))
             low = -high
             if nx > 0:
                 low = max(low, -dy * ny / nx)
@@ -181,9 +186,10 @@ cdef class Photo:
     cdef bint side(self, Station* here, double nx, double ny, Side* side) noexcept nogil:
         """What the normal (nx, ny) points to from the station; False where no pixel of that is seen."""
         cdef int r, c, sweep
-        cdef double dx, dy, d, w, v, m, det, bx, by, least, low, high, r0, r1, r2, v0, v1, m0, m1
+        cdef double dx, dy, d, w, v, m, det, bx, by, least, low, high, r0, r1, r2, v0, v1, m0, m1, sum_w
         cdef double s = 0, sx = 0, sy = 0, sxx = 0, sxy = 0, syy = 0, sv = 0, sxv = 0, syv = 0
         cdef double sm = 0, sxm = 0, sym = 0
+        cdef double q0, q1, q2, q = 0, qx = 0, qy = 0, qxx = 0, qxy = 0, qyy = 0
         cdef unsigned long long[49] seen
         cdef unsigned long long bits
         cdef float* grey
@@ -201,7 +207,7 @@ cdef class Photo:
                     continue
                 grey = &self.grey[here.row + r, here.column]
                 away = &self.away[here.row + r, here.column]
-                r0 = r1 = r2 = v0 = v1 = m0 = m1 = 0
+                r0 = r1 = r2 = v0 = v1 = m0 = m1 = q0 = q1 = q2 = 0
                 c = -1
                 while bits:
                     c += 1
@@ -223,6 +229,9 @@ cdef class Photo:
                             m1 += m * dx
                         r0 += w
                         v0 += w * v
+                        q0 += w * w
+                        q1 += w * w * dx
+                        q2 += w * w * dx * dx
                         w *= dx
                         r1 += w
                         v1 += w * v
@@ -236,6 +245,13 @@ cdef class Photo:
                 sxv += w * v1
                 sm += w * m0
                 sxm += w * m1
+                v = w * w
+                q += v * q0
+                qx += v * q1
+                qxx += v * q2
+                qy += v * q0 * dy
+                qxy += v * q1 * dy
+                qyy += v * q0 * dy * dy
                 w *= dy
                 sy += w * r0
                 sxy += w * r1
@@ -246,6 +262,7 @@ cdef class Photo:
                 break
             if sweep == 1:
                 least -= _ALIKE
+        sum_w = s
         sx /= s
         sy /= s
         sv /= s
@@ -259,35 +276,43 @@ cdef class Photo:
         by = (sy * sxx - sx * sxy) / det
         w = 0.5 * (high - low)
         side.value = min(high + w, max(low - w, sv - bx * (sxv / s - sx * sv) - by * (syv / s - sy * sv)))
+        # each pixel counts w / s (1 + bx sx + by sy − bx x − by y)
+        v = 1 + bx * sx + by * sy
+        side.variance = (
+            v * v * q + bx * bx * qxx + by * by * qyy + 2 * (bx * by * qxy - v * bx * qx - v * by * qy)
+        ) / (sum_w * sum_w)
         side.mixed = max(0.0, sm - bx * (sxm / s - sx * sm) - by * (sym / s - sy * sm))
         return True
 
-    cdef double step(self, int edge, double t) noexcept nogil:
-        """The step at the part t of an edge; below 0 where one side has no pixel."""
+    cdef Step step(self, int edge, double t, double reach) noexcept nogil:
+        """The step at the part t of an edge, by pixels so far away."""
         cdef double dx = self.ends[edge, 2] - self.ends[edge, 0]
         cdef double dy = self.ends[edge, 3] - self.ends[edge, 1]
+        cdef double pure
         cdef Station here
         cdef Side left, right
-        self.look(edge, t, &here)
-        if not (self.side(&here, -dy, dx, &left) and self.side(&here, dy, -dx, &right)):
-            return -1
-        return fabs(right.value - left.value) / max(_LEAST_LEFT, 1.0 - left.mixed - right.mixed)
+        cdef Step step
+        self.look(edge, t, reach, &here)
+        step.grey, step.variance = 0, -1
+        if self.side(&here, -dy, dx, &left) and self.side(&here, dy, -dx, &right):
+            pure = max(_LEAST_LEFT, 1.0 - left.mixed - right.mixed)
+            step.grey = (right.value - left.value) / pure
+            step.variance = (left.variance + right.variance) / (pure * pure)
+        return step
 
-    def measure(self, Py_ssize_t first, Py_ssize_t last, double lengthy, double[::1] out) -> None:
-        """Fill out (m,) for edges first … last − 1 with the step across each, 0 and up; below 0 where none is seen.
+    def measure(
+        self, int[::1] edge, double[::1] t, double reach, Py_ssize_t first, Py_ssize_t last, double[:, ::1] out
+    ) -> None:
+        """Fill rows first … last − 1 of out (n, 2): the step at the part t (n,) of edge (n,), and its variance.
 
-        At the middle, or where an edge is longer than `lengthy` the median of that at its middle and at both quarters.
+        The step is signed: what is to the left of the edge less what is to its right. The variance is that where a
+        pixel's is 1, below 0 where one side has no pixel. reach: how far from the station pixels may be, at most
+        MAX_REACH.
         """
-        cdef Py_ssize_t e
-        cdef double dx, dy
+        cdef Py_ssize_t k
+        cdef Step step
         with nogil:
-            for e in range(first, last):
-                out[e] = self.step(<int>e, 0.5)
-                dx = self.ends[e, 2] - self.ends[e, 0]
-                dy = self.ends[e, 3] - self.ends[e, 1]
-                if dx * dx + dy * dy > lengthy * lengthy:
-                    out[e] = _middle(self.step(<int>e, 0.25), out[e], self.step(<int>e, 0.75))
-
-
-cdef inline double _middle(double a, double b, double c) noexcept nogil:
-    return max(min(a, b), min(max(a, b), c))
+            for k in range(first, last):
+                step = self.step(edge[k], t[k], reach)
+                out[k, 0] = step.grey
+                out[k, 1] = step.variance
