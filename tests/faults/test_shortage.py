@@ -34,7 +34,7 @@ COMMANDS = [
     (["compose", "small.pgm", "--width", "1in"], ["filters"]),
     (["detect-lines", "small.pgm"], ["masks"]),
     (["detect-edges", "small.pgm"], ["ridges"]),
-    (["outline", "crowd.edges.json", "--width", "1in"], ["curve_fitting"]),
+    (["outline", "crowd.edges.json", "--width", "1in"], ["curve_fitting", "trails"]),
 ]
 
 

@@ -8,7 +8,7 @@
      · · · · · \\ x         another thing.
 """
 
-from libc.math cimport fabs, floor, sqrt
+from libc.math cimport floor, sqrt
 from penink_cli.geometry._compiled.flood cimport flood
 from penink_cli.ground._compiled.real cimport exponential
 
