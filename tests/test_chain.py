@@ -69,3 +69,13 @@ def test_the_drawing_is_strokes_and_not_a_halftone(camera_ps, ghostscript):
     drawing = ghostscript(camera_ps, dpi=600, antialias=False)
     assert set(np.unique(drawing)) <= {0.0, 1.0}
     assert 0.2 < drawing.mean() < 0.8
+
+
+@pytest.mark.parametrize("width", ["5pt", "10pt", "0.2in", "20pt", "30pt"])
+@pytest.mark.parametrize("style", ["house", "true", "engraving"])
+def test_a_photograph_is_drawn_as_small_as_an_initial(penink, tmp_path, photographs, style, width):
+    """Where a whole picture has a few dozen pixels, stages differ in shape by a rounding."""
+    done = penink("draw", photographs("horse"), "--style", style, "--width", width, "--as", "svg")
+    assert done.returncode == 0, done.stderr.decode()
+    assert b"shape" not in done.stderr
+    assert done.stdout.count(b"<path") > 0

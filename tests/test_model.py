@@ -6,6 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from penink_cli.ground.model import Strokes
+from penink_cli.ground.shapes import same_shape
 from tests.formats.test_strokes import drawings
 
 
@@ -55,3 +56,21 @@ def test_a_swelling_stroke_has_its_mean_and_its_widest():
     assert strokes.widths.tolist() == pytest.approx([0.4, 0.5])
     assert strokes.widest.tolist() == [0.9, 0.5]
     assert strokes.swells.tolist() == [True, False]
+
+
+SIDES = st.integers(1, 5000)
+
+
+@given(SIDES, SIDES, SIDES, SIDES)
+def test_all_resizings_of_a_picture_have_its_shape(width, height, one, other):
+    """The longer side of each is what is asked for, the shorter one is rounded."""
+    sizes = [
+        tuple(max(1, round(side * longer / max(width, height))) for side in (width, height)) for longer in (one, other)
+    ]
+    assert same_shape(*sizes[0], *sizes[1])
+    assert same_shape(*sizes[1], *sizes[0])
+
+
+@given(st.integers(20, 5000), st.integers(20, 5000))
+def test_a_picture_a_tenth_higher_has_another_shape(width, height):
+    assert not same_shape(width, height, 2 * width, round(2.2 * height) + 1)
