@@ -7,7 +7,6 @@ then places a point on the ridge to a fraction of a pixel.
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from functools import partial
 
@@ -18,6 +17,7 @@ from penink_cli.arrangement._compiled import points as _points
 from penink_cli.arrangement._compiled import ridges as _ridges
 from penink_cli.ground import exact
 from penink_cli.ground import threads as threading
+from penink_cli.ground.gaussian import smoothed
 from penink_cli.ground.model import Floats
 
 Ints32 = npt.NDArray[np.int32]
@@ -128,19 +128,12 @@ def edge_points(grey: npt.NDArray[np.floating], sigma: float, low: float) -> Edg
     return EdgePoints(pixel[kept], position, gradient, surround, width_, index).indexed()
 
 
-def _gaussian(sigma: float) -> Floats:
-    """Weights of a Gaussian from the middle one to four deviations out; all, with their mirror images, sum to 1."""
-    weights = [float(exact.exp(-0.5 * (k / sigma) ** 2)) for k in range(int(4 * sigma + 0.5) + 1)]
-    return np.array(weights) / (weights[0] + 2 * math.fsum(weights[1:]))
-
-
 def _band(grey: npt.NDArray[np.floating], sigma: float, low: float, top: int) -> tuple[Ints32, Floats]:
     """Pixels and values, as of `points.locate` and `surround`, of the rows from top on."""
     halo = int(4 * sigma + 0.5) + 4 + SURROUND_PX
     first, last = max(0, top - halo), min(len(grey), top + _BAND_ROWS + halo)
     band = np.ascontiguousarray(grey[first:last], np.float32)
-    smooth = np.empty_like(band)
-    _ridges.smooth(band, _gaussian(sigma), smooth)
+    smooth = smoothed(band, sigma)
     mask = np.zeros(band.shape, np.uint8)
     _ridges.ridges(smooth, low * _SOBEL_GAIN, mask)
     mask[: top - first] = 0

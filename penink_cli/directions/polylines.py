@@ -31,7 +31,9 @@ def crossed(lines: WeightedLines, rows: int, columns: int) -> tuple[Floats, Floa
     Each piece counts by its length in cells times its weight. What lies outside the frame counts nowhere.
     """
     points = lines.points * (columns, rows)
-    start = np.setdiff1d(np.arange(len(points) - 1), lines.first[1:-1] - 1)
+    within = np.ones(max(0, len(points) - 1), np.bool_)
+    within[lines.first[1:-1] - 1] = False  # from the end of one to the beginning of the next
+    start = np.flatnonzero(within)
     a, step = points[start], points[start + 1] - points[start]
     length = np.sqrt(step[:, 0] * step[:, 0] + step[:, 1] * step[:, 1])
     vectors, sums = np.zeros((rows * columns, 2)), np.zeros(rows * columns)

@@ -12,6 +12,7 @@ import numpy as np
 
 from penink_cli.geometry import edge_index
 from penink_cli.geometry.sides import rounded_beside_samples
+from penink_cli.ground.median import distinct
 from penink_cli.ground.model import EdgeList, Floats, Ints
 
 _CELL = 16  # grid points: conflicts are looked for among the edges of such a cell
@@ -69,7 +70,7 @@ def _near_pairs(grid: Ints, ends: Ints) -> Ints:
     other = one + 1 + np.arange(len(one)) - np.repeat(np.cumsum(later) - later, later)
     a, b = edge[one], edge[other]
     meet = ((low[a] <= high[b]) & (low[b] <= high[a])).all(axis=1)
-    pair = np.unique(a[meet] * len(ends) + b[meet])
+    pair = distinct(a[meet] * len(ends) + b[meet])
     return np.column_stack([pair // len(ends), pair % len(ends)])
 
 

@@ -9,6 +9,7 @@ device      what a printer adds to a stroke
 exact       functions whose last bit is the same everywhere; for kernels _compiled/real.pxd; median
 decimals    numbers as text
 angles      directions on the sheet; shapes: whether two grids may be of one picture
+gaussian    a low-pass of pictures
 colour      sRGB's curve and CIE Lab; codes: `#rrggbb`
 masks       parts of a mask that hang together, and distances
 threads     bands of work shared out

@@ -1,4 +1,4 @@
-"""The median, as numpy has it, without the tens of milliseconds that its first call takes to load masked arrays."""
+"""Median, quantiles and distinct numbers as numpy has them, which loads masked arrays first, in 15 ms or more."""
 
 from __future__ import annotations
 
@@ -18,3 +18,26 @@ def median(values: npt.NDArray[Any], axis: int = -1) -> Any:
     low, high = (n - 1) // 2, n // 2
     parted = np.partition(values, (low, high), axis=axis)
     return (parted.take(low, axis=axis) + parted.take(high, axis=axis)) / 2
+
+
+def quantile(values: npt.NDArray[Any], share: float) -> float:
+    """The number (n,) below which that share of them lies, linear in between; there is at least one, and no NaN.
+
+    >>> quantile(np.array([3.0, 1.0, 9.0, 2.0]), 0.4)
+    2.2
+    """
+    at = share * (len(values) - 1)
+    low = int(at)
+    parted = np.partition(values, (low, min(low + 1, len(values) - 1)))
+    a, b = float(parted[low]), float(parted[min(low + 1, len(values) - 1)])
+    return a + (b - a) * (at - low) if at - low < 0.5 else b - (b - a) * (1 - (at - low))
+
+
+def distinct(values: npt.NDArray[np.integer]) -> npt.NDArray[np.integer]:
+    """The numbers (n,), each once, in order.
+
+    >>> distinct(np.array([5, 2, 5])).tolist()
+    [2, 5]
+    """
+    ordered = np.sort(values)
+    return ordered[np.append(True, ordered[1:] != ordered[:-1])[: len(ordered)]]

@@ -11,6 +11,7 @@ from penink_cli.geometry import curves
 from penink_cli.geometry.curves import lengths
 from penink_cli.ground import pens
 from penink_cli.ground.device import narrowed
+from penink_cli.ground.median import median
 from penink_cli.ground.model import Floats, LineChoice, Lines, Strokes
 from penink_cli.lines.choice import chosen
 
@@ -49,7 +50,7 @@ def line_strokes(
         knots, pressed, ring = _knots(points, weight)
         ruled = _ruled(points, choice.ruled_pt * by) if choice.ruled_pt and not ring else []
         if ruled:
-            width = choice.pen_pt * (1.0 if choice.even else FINEST + (1 - FINEST) * float(np.median(pressed)))
+            width = choice.pen_pt * (1.0 if choice.even else FINEST + (1 - FINEST) * float(median(pressed)))
             chains += ruled
             widths += [width] * len(ruled)
             continue

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from penink_cli.ground.errors import ParameterError
+from penink_cli.ground.median import distinct
 from penink_cli.ground.model import Floats, Strokes
 from penink_cli.ground.papers import LIMIT, PAPERS, paper_size, plain_name
 
@@ -78,7 +79,7 @@ def ink_box(strokes: Strokes) -> tuple[float, float, float, float] | None:
     low, high = (strokes.points - half)[knot].min(axis=0), (strokes.points + half)[knot].max(axis=0)
     # Most curves lie within that. Of the others, only what lies beyond matters.
     beyond = ((strokes.points - half < low) | (strokes.points + half > high)).any(axis=1) & ~knot
-    last = np.unique(np.flatnonzero(beyond) + 3 - number[beyond] % 3)
+    last = distinct(np.flatnonzero(beyond) + 3 - number[beyond] % 3)
     if len(last):
         segments = last[:, None] + np.arange(-3, 1)
         reach = _turning_points(strokes.points[segments])

@@ -6,6 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from penink_cli.ground import exact
+from penink_cli.ground.median import quantile
 from penink_cli.ground.model import EdgeList, Floats
 
 LEAST_BLUR, MOST_BLUR = 0.4, 3.0
@@ -71,7 +72,7 @@ def camera_blur(grey: npt.NDArray[np.floating], edges: EdgeList) -> float:
     bend = -exact.log(before / here) - exact.log(after / here)
     cosine = np.maximum(np.abs(normals[usable, 0]), np.abs(normals[usable, 1]))
     width2 = np.where(bend > 1e-3, cosine**2 / np.maximum(bend, 1e-3), np.inf)
-    square = float(np.quantile(width2, 0.35)) - variance - _OWN
+    square = quantile(width2, 0.35) - variance - _OWN
     return float(np.clip(np.sqrt(max(0.0, square)), LEAST_BLUR, MOST_BLUR))
 
 

@@ -23,6 +23,7 @@ import numpy.typing as npt
 from penink_cli.geometry import walls
 from penink_cli.ground import exact
 from penink_cli.ground.errors import ParameterError
+from penink_cli.ground.gaussian import smoothed
 from penink_cli.ground.model import EdgeList
 from penink_cli.reconstruction.camera import camera_blur
 from penink_cli.reconstruction.enlarge import reconstruct
@@ -176,9 +177,7 @@ def choose_grid(
 
 def _detail(view: _View) -> float:
     """RMS, grey 0 … 1, of what a drawing shows of a photo besides its broad tones."""
-    from scipy.ndimage import gaussian_filter
-
-    fine, broad = (gaussian_filter(view.picture, view.seen * k, mode="nearest") for k in (1, _AROUND))
+    fine, broad = (smoothed(view.picture, view.seen * k) for k in (1, _AROUND))
     # summed as whole numbers: the order of the sum is not the same on every machine
     squares = int((np.rint((fine - broad) * 65536).astype(np.int64) ** 2).sum())
     return math.sqrt(squares / view.picture.size) / 65536
@@ -192,8 +191,6 @@ def remaining_error(
 
     seen: σ, pixels of the photo, by which the difference is blurred first.
     """
-    from scipy.ndimage import gaussian_filter
-
     height, width = photo.shape
     halo = int(4 * (blur + seen) + 1)
     rows = max(64, 4_000_000 // width)
@@ -204,12 +201,12 @@ def remaining_error(
         grey = reconstruct(samples.astype(float), edges, fine * width, fine * height, window=window, threads=threads)
         grey = np.clip(grey, 0, 1, out=grey).reshape(last - first, fine, width, fine).mean(axis=(1, 3))
         if blur:
-            grey = gaussian_filter(grey, blur, mode="nearest")
+            grey = smoothed(grey, blur)
         grey -= photo[first:last]
         if seen:
-            grey = gaussian_filter(grey, seen, mode="nearest")
+            grey = smoothed(grey, seen)
         bottom = min(height, top + rows)
-        total += float(np.square(grey[top - first : bottom - first]).sum())
+        total += float(np.square(grey[top - first : bottom - first], dtype=np.float64).sum())
     return float(np.sqrt(total / photo.size))
 
 

@@ -15,7 +15,8 @@ import numpy.typing as npt
 
 from penink_cli.geometry import walls
 from penink_cli.geometry.trails import trails
-from penink_cli.ground.model import EdgeList, Floats, Ints
+from penink_cli.ground.gaussian import smoothed
+from penink_cli.ground.model import EdgeList, Ints
 from penink_cli.reconstruction.camera import camera_blur
 from penink_cli.reconstruction.enlarge import reconstruct
 from penink_cli.reconstruction.extraction import extract_samples
@@ -113,7 +114,7 @@ def _saved(
     errors = []
     for arrangement in (edges, EdgeList(edges.width, edges.height)):
         difference = _difference(arrangement, photo, columns, rows, blur, SEEN_PT * width / seen_at, threads)
-        errors.append(difference * difference)
+        errors.append(np.square(difference, dtype=np.float64))
     saved = np.rint((errors[1] - errors[0]) * (255.0**2 * _PARTS)).astype(np.int64)
     nearest = walls.nearest(edges, width, height, _REACH * width / columns)
     chain_of = np.empty(len(edges.edges), np.int64)
@@ -127,15 +128,12 @@ def _saved(
 
 def _difference(
     edges: EdgeList, photo: Grey32, columns: int, rows: int, blur: float, seen: float, threads: int | None
-) -> Floats:
+) -> Grey32:
     """What the reconstruction of a grid, as the camera would see it, differs from the photo, blurred by `seen`."""
-    from scipy.ndimage import gaussian_filter
-
     height, width = photo.shape
     samples = reduce(
         extract_samples(photo, edges), edges, columns, rows, photo=photo, fit="lsq", blur=blur, threads=threads
     )
     grey = reconstruct(samples.astype(float), edges, 2 * width, 2 * height, threads=threads)
     grey = np.clip(grey, 0, 1, out=grey).reshape(height, 2, width, 2).mean(axis=(1, 3))
-    grey = gaussian_filter(grey, blur, mode="nearest") - photo
-    return np.asarray(gaussian_filter(grey, seen, mode="nearest"))
+    return smoothed(smoothed(grey, blur) - photo, seen)

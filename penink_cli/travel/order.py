@@ -12,6 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from penink_cli.ground import exact
+from penink_cli.ground.median import distinct
 from penink_cli.ground.model import Floats, Ints, Strokes
 from penink_cli.travel._compiled import improve as _improve
 from penink_cli.travel._compiled import tree as _tree
@@ -147,7 +148,7 @@ def _morton(points: Floats) -> Ints:
     low = points.min(axis=0)
     side = float((points - low).max())
     codes = _interleaved(((points - low) * ((2**26 - 1) / side if side > 0 else 0.0)).astype(np.int64))
-    if len(points) > 1000 and len(np.unique(codes[::97])) < len(codes[::97]) / 2:
+    if len(points) > 1000 and len(distinct(codes[::97])) < len(codes[::97]) / 2:
         # Most points share cells, as beside one that is far off. Ranks are spread evenly, wherever the points are.
         ranks = np.argsort(np.argsort(points, axis=0, kind="stable"), axis=0, kind="stable")
         codes = _interleaved(ranks)

@@ -6,8 +6,8 @@ import skimage.data
 from scipy.ndimage import gaussian_filter
 from skimage.feature import canny
 
-from penink_cli.arrangement import gradient
 from penink_cli.arrangement._compiled import ridges
+from penink_cli.ground.gaussian import smoothed
 
 PICTURES = {
     "noise": lambda: np.random.default_rng(1).random((90, 70)),
@@ -23,8 +23,7 @@ PICTURES = {
 @pytest.mark.parametrize("sigma", [0.6, 1.0, 1.6])
 def test_ridges_are_those_of_canny(name, sigma):
     grey = PICTURES[name]().astype(np.float32)
-    smooth, found = np.empty_like(grey), np.zeros(grey.shape, np.uint8)
-    ridges.smooth(grey, gradient._gaussian(sigma), smooth)
+    smooth, found = smoothed(grey, sigma), np.zeros(grey.shape, np.uint8)
     assert np.abs(smooth - gaussian_filter(grey, sigma, mode="nearest")).max() <= 1e-6
     count = ridges.ridges(smooth, 0.2, found)
     assert count == found.sum()

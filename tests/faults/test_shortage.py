@@ -33,7 +33,7 @@ COMMANDS = [
     (["reduce", "small.pgm", *EDGES, "--factor", "3", "--fit", "lsq", "--photo", "small.pgm"], SEARCH),
     (["compose", "small.pgm", "--width", "1in"], ["filters"]),
     (["detect-lines", "small.pgm"], ["masks"]),
-    (["detect-edges", "small.pgm"], ["ridges"]),
+    (["detect-edges", "small.pgm"], ["gaussian", "ridges"]),
     (["outline", "crowd.edges.json", "--width", "1in"], ["curve_fitting", "trails"]),
 ]
 
