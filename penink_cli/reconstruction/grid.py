@@ -200,13 +200,11 @@ def remaining_error(
         window = 0, fine * first, fine * width, fine * (last - first)
         grey = reconstruct(samples.astype(float), edges, fine * width, fine * height, window=window, threads=threads)
         grey = np.clip(grey, 0, 1, out=grey).reshape(last - first, fine, width, fine).mean(axis=(1, 3))
-        if blur:
-            grey = smoothed(grey, blur)
-        grey -= photo[first:last]
+        off = (smoothed(grey, blur) if blur else grey.astype(np.float32)) - photo[first:last]
         if seen:
-            grey = smoothed(grey, seen)
+            off = smoothed(off, seen)
         bottom = min(height, top + rows)
-        total += float(np.square(grey[top - first : bottom - first], dtype=np.float64).sum())
+        total += float(np.square(off[top - first : bottom - first], dtype=np.float64).sum())
     return float(np.sqrt(total / photo.size))
 
 
