@@ -10,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from penink_cli.blasting import curve_fitting, curves, marks
+from penink_cli.blasting.gaps import Gaps
 from penink_cli.composition.filters import Picture
 from penink_cli.ground.masks import labelled, near
 from penink_cli.ground.model import Floats
@@ -23,16 +24,20 @@ LEAST_PLACES = 5
 #: painted widths apart: what lies beyond the stroke, at 2 halves less this, is then no further than 2 - 1.05 = .95
 #: halves from a place of a row, of which .75 are needed.
 TOLERANCE_PT, WITHIN, PITCH = 0.03, 1.05, 0.75
+#: Rows begin CLEAR of half a painted width from a white line, BEYOND beyond its ends; strokes beside it go on for one.
+CLEAR, BEYOND = 1.2, 0.4
 #: The least area too thin for strokes along its border that is filled, square points: less is roughness of the border.
 LEAST_THIN_PT2 = 0.3
 
 
 def fill(
-    tone: Picture, scale: Floats, pen_pt: float, gain_pt: float, chains: list[Floats], widths: list[float], fixed: bool
-) -> None:
+    tone: Picture, scale: Floats, pen_pt: float, gain_pt: float, chains: list[Floats], widths: list[float], fixed: bool,
+    gaps: Gaps | None = None,
+) -> None:  # fmt: skip
     """Strokes that fill where the tone (h, w) exceeds `marks.LEVEL`; scale (2,): a pixel's width and height, points.
 
     pen_pt: their width, which thin places narrow unless it is `fixed`; gain_pt: how much wider the device paints them.
+    gaps: lines within that are left white, with room for a stroke to either side.
     """
     half = (pen_pt + gain_pt) / 2
     inside = tone > marks.LEVEL
@@ -48,8 +53,18 @@ def fill(
             widths.append(pen_pt)
         path = ring + WITHIN * half * normal
         edges.append(np.stack([path, _beside(path)[1]], axis=1))
+    along = np.array([1.0, 0.0])
+    if gaps:
+        flanks = gaps.flanks(pen_pt, gain_pt)
+        chains.extend(flanks)
+        widths.extend([pen_pt] * len(flanks))
+        for rim in gaps.rims(CLEAR * pen_pt / 2, CLEAR * gain_pt, BEYOND * half):
+            edges.append(np.stack([rim, np.roll(rim, -1, axis=0)], axis=1))
+        along = gaps.direction()  # rows along them are cut by the fewest
     if edges:
-        rows = marks.straight(*_rows(np.concatenate(edges), PITCH * 2 * half))
+        rows = marks.straight(*_rows(_turned(np.concatenate(edges), along * [1, -1]), PITCH * 2 * half))
+        if gaps and rows:
+            rows = list(_turned(np.stack(rows), along))
         chains.extend(rows)
         widths.extend([pen_pt] * len(rows))
     thin = _thin(inside, half, 1 / float(scale[0]))
@@ -155,6 +170,12 @@ def _rows(edges: Floats, pitch: float) -> tuple[Floats, Floats, Floats]:
     before = np.concatenate([[False], within[:-1]])
     begin, end = order[within & ~before], order[~within & before]
     return x[begin], x[end], y[begin]
+
+
+def _turned(points: Floats, by: Floats) -> Floats:
+    """Points (…, 2) turned by the angle that has this cosine and sine."""
+    x, y = points[..., 0], points[..., 1]
+    return np.stack([x * by[0] - y * by[1], x * by[1] + y * by[0]], axis=-1)
 
 
 def _thin(inside: marks.Mask, half: float, px: float) -> marks.Mask:

@@ -123,7 +123,7 @@ class Form:
     def normals(self, i: int) -> tuple[Plane, Plane]:
         """The unit normal at each node, either way, of layer i's strokes."""
         cos2, sin2 = (np.pad(plane, PAD, mode="edge") for plane in self.turned(i))
-        return _normal(cos2, sin2)
+        return normal(cos2, sin2)
 
     def swept(self, i: int, coverage: Floats, pen: float, finest: float, seed: int) -> candidates.Candidates:
         """The strokes of layer i that cover each cell (rows, columns) as coverage asks, in no order."""
@@ -239,7 +239,7 @@ class Form:
         sheet = self.sheet
         at = np.floor(points * (sheet.columns / sheet.width, sheet.rows / sheet.height)).astype(np.int64)
         x, y = np.clip(at, 0, [sheet.columns - 1, sheet.rows - 1]).T
-        nx, ny = _normal(planes[0][y, x], planes[1][y, x])
+        nx, ny = normal(planes[0][y, x], planes[1][y, x])
         return np.column_stack([ny, -nx]).astype(np.float64)
 
     def _lines(self, field: Field, phase: Plane, level: float, wanted: npt.NDArray[np.bool_], seed: int) -> LevelLines:
@@ -310,7 +310,7 @@ def _grown(mask: npt.NDArray[np.bool_], by: int = 3) -> npt.NDArray[np.bool_]:
     return np.ascontiguousarray(mask)
 
 
-def _normal(cos2: Plane, sin2: Plane) -> tuple[Plane, Plane]:
+def normal(cos2: Plane, sin2: Plane) -> tuple[Plane, Plane]:
     """x and y of the unit normal, either way, of lines at half the angle that has this cosine and sine."""
     # by whichever of the half angle's sine and cosine is the greater
     half = np.sqrt(np.float32(0.5) * (1 + np.abs(cos2)))

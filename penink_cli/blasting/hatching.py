@@ -14,7 +14,7 @@ depends on its neighbours on all sides.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -71,6 +71,32 @@ REFIT_PT, REFIT_STEP_PT = 0.15, 2.0
 PRESSURE, PRESSES = 0.22, 3
 
 
+@dataclass(frozen=True, eq=False)
+class Hatch:
+    """What a sheet is hatched with.
+
+    pens: the width of each layer's strokes, points; finest: the least that they thin out to in the light.
+    gain_pt: how much wider the device paints each. borders: where strokes end. form: what lays them along a field, None
+    for straight ones. sweeps: rounds that lay the lines anew.
+    """
+
+    layers: tuple[HatchLayer, ...]
+    pens: list[float]
+    finest: list[float]
+    gain_pt: float
+    borders: walls.Walls
+    form: Form | None
+    seed: int
+    sweeps: int = SWEEPS
+
+    def swept(self, sheet: Sheet, i: int, cover: Floats) -> candidates.Candidates:
+        """The strokes of layer i that cover each cell (rows, columns) as asked."""
+        pen, finest, seed = self.pens[i], self.finest[i], self.seed * 64 + i
+        if self.form:
+            return self.form.swept(i, cover, pen, finest, seed)
+        return candidates.swept(sheet, cover, self.layers[i], pen, finest, self.gain_pt, self.borders, seed)
+
+
 def hatch_sheet(
     sheet: Sheet,
     layers: tuple[HatchLayer, ...],
@@ -98,8 +124,24 @@ def hatch_sheet(
     if examples is not None:
         assert directions is not None
         form = StrokeSet(sheet, *directions, examples, pen_pt, borders)
+    hatch = Hatch(layers, pens, finest, gain_pt, borders, form, seed, SWEEPS if examples is None else SET_SWEEPS)
     along = thin.strokes_along(sheet, min(pens), min(pens) + MEAN * gain_pt, pen_pt is not None, told)
     draw_first(sheet, along)
+    drawn = Strokes.joined([along, lines(sheet, hatch, tick)])
+    if form:
+        drawn = Strokes.joined([drawn, *fillers(sheet, form, pens, seed)])
+    fine = fine_strokes(sheet, layers, finest, gain_pt, borders, seed, form)
+    drawn = Strokes.joined([drawn, *fine])
+    if form:
+        drawn = in_fewer_cubics(drawn)
+    if pen_pt is None and len(drawn):
+        drawn = press(sheet, drawn, seed)
+    return drawn
+
+
+def lines(sheet: Sheet, hatch: Hatch, tick: Callable[[], None]) -> Strokes:
+    """Lay lines on the sheet, round by round, that give it its tone as near as they can; they are inked."""
+    along_form = hatch.form is not None and not isinstance(hatch.form, StrokeSet)
     wide = sheet.low_pass(sheet.tone)
     drawn_wide = sheet.low_pass(sheet.ink)
     there = np.minimum(drawn_wide / sheet.weight, np.float32(0.99))
@@ -110,23 +152,18 @@ def hatch_sheet(
     best: tuple[float, int, list[Strokes]] | None = None
     for turn in range(ROUNDS):
         tick()
-        if turn < (SWEEPS if examples is None else SET_SWEEPS):
+        if turn < hatch.sweeps:
             laid = []  # frees those of the round before
             smooth = (sheet.low_pass(density) if turn else wide) / sheet.weight - there
             smooth = np.maximum(smooth, 0) / np.maximum(1 - there, np.float32(BARE))
-            covers = layer_shares(sheet, smooth, density, layers, form is not None and examples is None)
-            for i, (layer, pen, hair) in enumerate(zip(layers, pens, finest)):
-                cover, own_seed = covers.pop(0), seed * 64 + i
-                if form:
-                    laid.append(form.swept(i, cover, pen, hair, own_seed))
-                else:
-                    laid.append(candidates.swept(sheet, cover, layer, pen, hair, gain_pt, borders, own_seed))
+            covers = layer_shares(sheet, smooth, density, hatch.layers, along_form)
+            laid = [hatch.swept(sheet, i, covers.pop(0)) for i in range(len(hatch.layers))]
         sheet.clear()
         if turn:
             sheet.owe(wanted)
         else:
             sheet.residual = wide - drawn_wide
-        strokes = [along]
+        strokes = []
         for part in laid:
             strokes.append(part.placed(sheet, LAID, enters=np.zeros(len(part.widths))))
         error = sheet.error()
@@ -134,7 +171,7 @@ def hatch_sheet(
         if best is None or size < best[0]:
             best = size, turn, strokes
         error = sheet.spread(error) * crowd
-        if form:
+        if hatch.form:
             error = np.clip(error, -MOST_FED_BACK, MOST_FED_BACK)
         wanted = wanted + error
         density = density + np.float32(SWEEP_GAIN) * error
@@ -144,14 +181,6 @@ def hatch_sheet(
     if best[1] != ROUNDS - 1:
         sheet.clear()
         paint(sheet, drawn)
-    if form:
-        drawn = Strokes.joined([drawn, *fillers(sheet, form, pens, seed)])
-    fine = fine_strokes(sheet, layers, finest, gain_pt, borders, seed, form)
-    drawn = Strokes.joined([drawn, *fine])
-    if form:
-        drawn = in_fewer_cubics(drawn)
-    if pen_pt is None and len(drawn):
-        drawn = press(sheet, drawn, seed, crowd)
     return drawn
 
 
@@ -240,8 +269,13 @@ def fillers(sheet: Sheet, form: Form, pens: list[float], seed: int) -> list[Stro
     return out
 
 
-def press(sheet: Sheet, strokes: Strokes, seed: int, crowd: Cells) -> Strokes:
-    """Vary the widths of the strokes on the sheet, as a hand's pressure does, to bring the tone closer."""
+def press(sheet: Sheet, strokes: Strokes, seed: int, crowd: Cells | None = None) -> Strokes:
+    """Vary the widths of the strokes on the sheet, as a hand's pressure does, to bring the tone closer.
+
+    crowd: (rows, columns) how far strokes make the tone together there, as `Sheet.crowd` tells of hatching.
+    """
+    if crowd is None:
+        crowd = sheet.crowd(SINGLE, sheet.low_pass(sheet.tone))
     order = np.random.default_rng([seed, 5]).permutation(len(strokes))
     pieces = curves.pieces_of(strokes.points, strokes.first, candidates.STEP_PT)
     lines = curves.sample(strokes.points, strokes.first, pieces)

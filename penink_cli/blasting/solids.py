@@ -2,7 +2,7 @@
 
 Layers that cross each other in the dark are a grainy net, and strokes that close up leave flecks of white where they
 end. Here the dark is found first: as far as it is black, and where it meets light, up to half way between them. Rows of
-a pen that overlap fill it; hatching begins beside it.
+a pen that overlap fill it, save white lines (`reserved`); hatching begins beside it.
 
 Textures that have a way of their own to be black keep it, save around small light things: what is finer than its
 strokes no texture leaves out.
@@ -13,6 +13,7 @@ from __future__ import annotations
 import numpy as np
 
 from penink_cli.blasting import bordered, marks
+from penink_cli.blasting.gaps import Gaps
 from penink_cli.blasting.light import LightThings
 from penink_cli.blasting.sheet import Cells, resample
 from penink_cli.composition.filters import Picture, blurred
@@ -21,6 +22,10 @@ from penink_cli.ground.model import Floats, Strokes
 
 #: The tone from which on it is black where a texture ends in black, and where one can be as dark as DARKEST itself.
 BLACK, DARKEST = 0.93, 0.97
+#: Black with white lines in it is so wide somewhere, and has an outline: along OUTLINED of its border the tone falls
+#: below OUTSIDE within OUTLINE_PT. Where it ended in a smooth tone its border would be that of nothing in the picture.
+#: Amid it there is no hatching of less than HOLE_PT2 square points that is dark all over.
+ROOM_PT, OUTLINED, OUTSIDE, OUTLINE_PT, HOLE_PT2 = 6.0, 0.5, 0.7, 4.0, 200.0
 #: How far black is filled around small light things.
 BESIDE_PT = 3.0
 #: Whether it is black is told by the tone under a Gaussian of σ SMOOTH_PT. Where the tone falls below LIGHT within
@@ -41,21 +46,38 @@ NEARLY, SHARE = 0.04, 0.25
 PEN_PT = 0.35
 
 
-def solids(
-    tone: Floats, width_pt: float, height_pt: float, pen_pt: float | None, gain_pt: float, ink: Cells,
-    black: float = BLACK, light: LightThings | None = None, everywhere: bool = True,
+def filled(
+    value: Picture | None, width_pt: float, height_pt: float, pen_pt: float | None, gain_pt: float,
+    gaps: Gaps | None = None,
 ) -> Strokes:  # fmt: skip
-    """Strokes that fill all that is as good as black in the tone (h, w) on a sheet of that size.
+    """Strokes that fill what `found` has found, save gaps in it, on a sheet of that size.
 
     pen_pt: the one pen there is, None for one that suits. gain_pt: how much wider the device paints it.
+    """
+    chains: list[Floats] = []
+    widths: list[float] = []
+    if value is not None:
+        h, w = value.shape
+        bordered.fill(
+            value, np.array([width_pt / w, height_pt / h]), PEN_PT if pen_pt is None else pen_pt, gain_pt, chains,
+            widths, pen_pt is not None, gaps,
+        )  # fmt: skip
+    return Strokes.of(width_pt, height_pt, chains, widths)
+
+
+def found(
+    tone: Floats, width_pt: float, height_pt: float, ink: Cells, black: float = BLACK,
+    light: LightThings | None = None, everywhere: bool = True, broad: float = 1.0,
+) -> Picture | None:  # fmt: skip
+    """What is as good as black in the tone (h, w): an image that exceeds `marks.LEVEL` there; None for nothing.
+
     ink: (rows, columns) what is on the sheet already: what that covers is drawn.
-    black: the tone from which on it is.
+    black: the tone from which on it is, and broad: the same of what is broad and has an outline, if that is less.
     light: small light things if there are any, around which alone it is filled unless `everywhere`.
     """
     h, w = tone.shape
-    none = Strokes(width_pt, height_pt)
-    if not (tone > black).any() or not (everywhere or light):
-        return none
+    if not (tone > min(black, broad)).any() or not (everywhere or light):
+        return None
     fine = max(1.0, marks.FINE * width_pt / w)
     if fine > 1:
         h, w = round(h * fine), round(w * fine)
@@ -65,34 +87,28 @@ def solids(
     alone = None
     if light and not everywhere:
         alone = resample(light.within(BESIDE_PT).astype(np.float64), h, w) > 0.5
-    dark = _dark(tone, px, black, close, alone, ink)
-    chains: list[Floats] = []
-    widths: list[float] = []
-    bordered.fill(
-        dark, np.array([width_pt / w, height_pt / h]), PEN_PT if pen_pt is None else pen_pt, gain_pt,
-        chains, widths, pen_pt is not None,
-    )  # fmt: skip
-    return Strokes.of(width_pt, height_pt, chains, widths)
+    return _dark(tone, px, (black, broad), close, alone, ink)
 
 
 def _dark(
-    tone: Floats, px: float, black: float, close: marks.Mask | None, alone: marks.Mask | None, ink: Cells
+    tone: Floats, px: float, black: tuple[float, float], close: marks.Mask | None, alone: marks.Mask | None, ink: Cells
 ) -> Picture:
     """A tone (h, w) that exceeds `marks.LEVEL` where it is to be filled, and is 0 where nothing is near.
 
-    px: pixels in a point. black, ink: as in `solids`. close: what is close to small light things, where there are any.
+    px: pixels in a point. black: the two tones of `found`; ink: as there.
+    close: what is close to small light things, where there are any.
     alone: the only places that may be filled, None for all.
     """
-    value, smooth = _values(tone, px, black, close, alone is None)
+    value, smooth, begins = _values(tone, px, black, close, alone is None)
     if alone is not None:
         value[~alone] = 0.0
-    core = smooth > black
+    core = smooth > begins
     blots = None
     if alone is None:
         deep = blurred(smooth, WIDE_PT * px, 1) >= AROUND  # dark all around
-        blots = _blots(smooth, core, deep, black, px)
+        blots = _blots(smooth, core, deep, begins, px)
         value[_flecks(value, smooth, px)] = np.nextafter(np.float32(marks.LEVEL), np.float32(1))
-    del smooth
+    del smooth, begins
     inside = value > marks.LEVEL
     part, boxes = labelled(inside)
     area, size = (sizes(part, len(boxes), mask) for mask in (core, inside))
@@ -108,16 +124,17 @@ def _dark(
 
 
 def _values(
-    tone: Floats, px: float, black: float, close: marks.Mask | None, everywhere: bool
-) -> tuple[Picture, Picture]:
-    """How black it is, of which more than `marks.LEVEL` is black; and the tone, smoothed: (h, w) each."""
+    tone: Floats, px: float, black: tuple[float, float], close: marks.Mask | None, everywhere: bool
+) -> tuple[Picture, Picture, Picture | np.float32]:
+    """How black it is, of which more than `marks.LEVEL` is; the tone, smoothed; the tone that black begins with."""
     tones: Picture = tone.astype(np.float32)  # of single precision: the whole sheet is looked at several times
     fall = FALLS_PT * px
     smooth = blurred(tones, SMOOTH_PT * px, 1)
     if everywhere:
         smooth = _without_grain(smooth, px)
-    falls = near(smooth >= LIGHT, fall, strictly=True) & near(smooth <= black, fall, strictly=True)
-    value = smooth - black
+    begins = np.float32(black[0]) if black[1] >= black[0] else _begins(smooth, *black, px)
+    falls = near(smooth >= LIGHT, fall, strictly=True) & near(smooth <= begins, fall, strictly=True)
+    value = smooth - begins
     # how much darker a place is than what black begins with there, half way up or down where it does
     darker = np.where(smooth > marks.LEVEL, np.maximum(tones, smooth), tones)  # smoothed outside, it would reach out
     darker -= marks.LEVEL
@@ -125,7 +142,7 @@ def _values(
     value += marks.LEVEL
     if close is not None:
         np.copyto(value, tones, where=close & falls)  # smoothed, it would be smaller
-    return value, smooth
+    return value, smooth, begins
 
 
 def _without_grain(tone: Picture, px: float) -> Picture:
@@ -143,14 +160,37 @@ def _without_grain(tone: Picture, px: float) -> Picture:
     return around
 
 
-def _blots(tone: Picture, core: marks.Mask, deep: marks.Mask, black: float, px: float) -> marks.Mask:
+def _opened(mask: marks.Mask, radius: float) -> marks.Mask:
+    """The discs of that radius, pixels, that a mask (h, w) has room for."""
+    return near(near(mask, radius), radius)
+
+
+def _begins(smooth: Picture, black: float, broad: float, px: float) -> Picture:
+    """The tone (h, w) that black begins with, of which there is to be more where it is broad and has an outline.
+
+    smooth: (h, w) the tone. px: pixels in a point.
+    """
+    mask = _opened(smooth > np.float32(broad), ROOM_PT / 2 * px)
+    part, boxes = labelled(mask)
+    border = mask & near(mask, 1.0)
+    outline = border & near(smooth >= OUTSIDE, OUTLINE_PT * px)
+    length, told = (sizes(part, len(boxes), some) for some in (border, outline))
+    there = (told >= OUTLINED * length)[part] & mask
+    # and what little hatching there would be amid it
+    hole, boxes = labelled(~there)
+    size, light = (sizes(hole, len(boxes), some) for some in (~there, smooth < AROUND))
+    amid = ((size < HOLE_PT2 * px * px) & (light == 0))[hole] & ~there
+    return np.where(there, np.float32(broad), np.where(amid, np.float32(AROUND), np.float32(black)))
+
+
+def _blots(tone: Picture, core: marks.Mask, deep: marks.Mask, black: Picture | np.float32, px: float) -> marks.Mask:
     """The black in the dark that is too little of it to be filled, (h, w).
 
     core: where the tone exceeds `black`; deep: where it is dark all around.
     """
     of, boxes = labelled(core)
     little = (sizes(of, len(boxes), core) < BLOT_PT2 * px * px)[of]
-    thing, boxes = labelled(tone > black - NEARLY)
+    thing, boxes = labelled(tone > black - np.float32(NEARLY))
     whole, dark = (sizes(thing, len(boxes), mask) for mask in (thing > 0, core))
     little |= (dark < SHARE * whole)[thing]
     return np.asarray(core & little & deep)

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
 
-from penink_cli.blasting import hatching, marks, solids
+from penink_cli.blasting import hatching, marks, reserved, solids
 from penink_cli.blasting.light import LightThings
-from penink_cli.blasting.sheet import Cells, Sheet, coverage
+from penink_cli.blasting.sheet import Cells, Sheet, coverage, resample
 from penink_cli.ground.angles import direction
 from penink_cli.ground.device import MEAN
 from penink_cli.ground.model import Directions, EdgeList, Floats, Strokes, Texture
@@ -86,16 +87,31 @@ class Begun:
 
     def _black(self) -> Strokes:
         """Solid black: everywhere under layers that reach it, else around small light things."""
-        task, layers = self.task, self.task.texture.layers
+        task, layers, sheet = self.task, self.task.texture.layers, self.sheet
+        size, gain = (task.width_pt, task.height_pt), MEAN * task.gain
         dark = layers[-1] if layers and task.texture.engraving is None and layers[-1].spacing_pt == 0 else None
         light = None if self.light.none else self.light
-        black = solids.BLACK if dark is not None and dark.high >= 1.0 else solids.DARKEST
-        told = (
-            task.tone, task.width_pt, task.height_pt, task.pen_pt, MEAN * task.gain, self.sheet.ink, black, light,
-            dark is not None and dark.high >= ALMOST,
-        )  # fmt: skip
-        return recalled("solids", told, lambda: solids.solids(*told))
+        whole = dark is not None and dark.high >= 1.0
+        black, broad = (solids.BLACK, reserved.FROM) if whole else (solids.DARKEST, 1.0)
+        told = task.tone, *size, sheet.ink, black, light, dark is not None and dark.high >= ALMOST, broad
+        value = recalled("black", told, lambda: solids.found(*told))
+        gaps = None
+        if value is not None and whole:
+            assert dark is not None
+            painted = (task.pen_pt or solids.PEN_PT) + gain
+            more = value, self.field, dark, task.edges, painted, task.seed
+            gaps = recalled("gaps", (task.tone, *more), lambda: reserved.white_lines(sheet, *more, task.tick))
+        rest = value, *size, task.pen_pt, gain, gaps
+        strokes = recalled("solids", rest, lambda: solids.filled(*rest))
+        if gaps is not None and value is not None:
+            part = resample((value > marks.LEVEL).astype(np.float64), sheet.rows, sheet.columns).astype(np.float32)
+            covered = coverage(strokes, sheet.rows, sheet.columns, gain)
+            # hatching draws nothing there, but is the lighter beside what is too dark
+            dark_by = np.minimum(sheet.spread(sheet.seen(sheet.tone * part - covered)), 0)
+            sheet.tone = sheet.tone * (1 - part) + np.where(part > 0, covered + dark_by, 0)
+        return strokes
 
+    @cached_property
     def field(self) -> tuple[Cells, Cells] | None:
         """Cosine and sine of twice the angle of the task's field in each cell, (rows, columns); None without one."""
         task, sheet = self.task, self.sheet

@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from penink_cli.blasting import curves, joining, pen_lines, polylines, rims, walls
-from penink_cli.blasting.form import PAD, _blurred, _normal
+from penink_cli.blasting.form import PAD, _blurred, normal
 from penink_cli.blasting.level_lines import LevelLines, level_lines
 from penink_cli.blasting.phase import Field, Nodes, Plane, solve
 from penink_cli.blasting.sheet import Cells, Sheet, look_up
@@ -98,7 +98,7 @@ def laid(
     pad = max(PAD, int(4 * spacing / dx) + 1)
     nodes = Nodes((0.5 - pad) * dx, (0.5 - pad) * dy, dx, dy, sheet.rows + 2 * pad, sheet.columns + 2 * pad)
     if field is not None and engraving.along:
-        nx, ny = _normal(*(np.pad(plane, pad, mode="edge") for plane in field))
+        nx, ny = normal(*(np.pad(plane, pad, mode="edge") for plane in field))
         asked = Field(nodes, nx, ny, np.full(nx.shape, 1 / spacing, np.float32))
         phase = solve(asked, borders.segments[borders.inside > 0], seed * 7 + 1, sheet.each)
     else:

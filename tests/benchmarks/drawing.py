@@ -22,11 +22,10 @@ from PIL import Image
 from scipy.ndimage import gaussian_filter
 
 from penink_cli.blasting.blast import left_over
-from penink_cli.blasting.sheet import coverage, resample
-from penink_cli.blasting.solids import solids
+from penink_cli.blasting.sheet import coverage
 from penink_cli.blasting.telling import told
 from penink_cli.formats import lines, strokes
-from penink_cli.ground.device import MEAN, widened
+from penink_cli.ground.device import widened
 from penink_cli.ground.model import GreyImage
 from penink_cli.measuring.tone import figures, printed
 from penink_cli.measuring.tone import wanted as as_wanted
@@ -108,11 +107,6 @@ def tone(folder, names=NAMES):
             if style == "house" and not options:
                 with open(found, "rb") as stream:
                     wanted, _ = told(wanted, drawn.width, drawn.height, lines.read(stream, "l.json"), None, 1)
-            if style == "house" and options:
-                nothing, gain = np.zeros((1, 1), np.float32), MEAN * 72 / PRINTER_DPI
-                black = solids(wanted, drawn.width, drawn.height, None, gain, nothing)
-                filled = coverage(black, round(4 * drawn.height), round(4 * drawn.width)).astype(float)
-                wanted = np.maximum(wanted, resample(filled, *wanted.shape))
             have = printed([widened(drawn, PRINTER_DPI)], 10**9, 1)
             grey = GreyImage.from_grey(1 - wanted, 65535)
             seen_by_all = figures(as_wanted(grey, have.shape[1], have.shape[0]), have)

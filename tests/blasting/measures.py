@@ -12,6 +12,7 @@ import subprocess
 import numpy as np
 from scipy.ndimage import gaussian_filter, map_coordinates
 
+from penink_cli.blasting.solids import BLACK, filled, found
 from penink_cli.ground.model import Floats, Strokes
 from penink_cli.outputs import postscript
 from penink_cli.outputs.page import lay_out
@@ -202,6 +203,14 @@ def repeats(ink: Floats, width: float, height: float, across: Floats, gap: float
         "tile_peak_db": 10 * np.log10(on.max() / np.mean([o.max() for o in off])),
         "repeat_corr": (together / together[0, 0])[far].max(),
     }
+
+
+def solids(
+    tone: Floats, width_pt: float, height_pt: float, pen_pt: float | None, gain_pt: float, ink: Floats,
+    black: float = BLACK,
+) -> Strokes:  # fmt: skip
+    """Strokes that fill what is black in the tone, without white lines."""
+    return filled(found(tone, width_pt, height_pt, ink, black), width_pt, height_pt, pen_pt, gain_pt)
 
 
 def ends_in_rows(strokes: Strokes, angle: float) -> float:

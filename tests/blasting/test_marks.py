@@ -10,10 +10,10 @@ from penink_cli.blasting.blast import blast
 from penink_cli.blasting.light import LightThings
 from penink_cli.blasting.marks import marks
 from penink_cli.blasting.sheet import coverage
-from penink_cli.blasting.solids import solids
 from penink_cli.ground.masks import distance
 from penink_cli.ground.model import Floats, Strokes
 from penink_cli.options.textures import find_texture
+from tests.blasting.measures import solids
 
 SIDE, FINE = 72, 8  # the sheet, points; what it is looked at in, pixels a point
 

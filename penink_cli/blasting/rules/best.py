@@ -43,7 +43,7 @@ def draw(task: Task) -> Strokes:
 def _layers(task: Task, begun: Begun) -> Strokes:
     layers, sheet = task.texture.layers, begun.sheet
     strokes = hatching.hatch_sheet(
-        sheet, layers, task.edges, task.gain, task.seed, task.pen_pt, task.tick, begun.field(), begun.told
+        sheet, layers, task.edges, task.gain, task.seed, task.pen_pt, task.tick, begun.field, begun.told
     )
     return _pressed(task, begun, strokes)
 
@@ -76,7 +76,7 @@ def _set(task: Task, begun: Begun) -> Strokes:
     examples = task.texture.strokes
     strokes = hatching.hatch_sheet(
         begun.sheet, stroke_set.passes(examples), task.edges, task.gain, task.seed, task.pen_pt, task.tick,
-        begun.field() or begun.one_angle(), begun.told, examples,
+        begun.field or begun.one_angle(), begun.told, examples,
     )  # fmt: skip
     return _pressed(task, begun, strokes)
 

@@ -24,5 +24,5 @@ def engraved(task: Task, begun: Begun) -> Strokes:
     """The lines alone, on a sheet that has been begun."""
     layers = task.texture.layers
     kind = task.texture.engraving or Engraving(angle=layers[0].angle if layers else Engraving.angle)
-    along = begun.field() if kind.along else None
+    along = begun.field if kind.along else None
     return engraving.engrave(begun.sheet, kind, task.edges, task.seed, along, task.tick, begun.near)

@@ -1,4 +1,4 @@
-"""Lines along the form, others at a slant over them where it is dark, and black where it is darkest.
+"""Lines along the form, others at a slant over them where it is dark, and black where it is darkest, with white lines.
 
 Lines along the form tell it best while they are alone. Those over them lie neither square to them, which looks woven,
 nor near them, which shimmers.
