@@ -64,17 +64,11 @@ def _band_lines(
     field: Field, phase: Plane, level: float, wanted: npt.NDArray[np.uint8], low: int, high: int
 ) -> tuple[Plane, Ints, Ints]:
     """Points, first and ends (see the kernel) of the lines between two rows of nodes."""
-    nodes = field.nodes
-    shape = high - low + 1, nodes.columns, 3
-    change, sign = np.empty(shape, np.float32), np.empty(shape, np.int8)
-    begin = np.empty(change.size + 1, np.int32)
-    total = _levels.crossings(
-        phase, field.nx, field.ny, field.density, wanted, nodes.dx, nodes.dy, level, low, high, change, sign, begin
-    )
-    place, border, beside = np.empty((total, 2), np.float32), np.empty(total, np.int32), np.empty((total, 2), np.int32)
-    _levels.places(phase, level, low, change, begin, nodes.left, nodes.top, nodes.dx, nodes.dy, place, border)
-    _levels.pairs(phase, level, low, change, sign, begin, beside)
-    del change, sign, begin
+    links = _levels.Band(field, phase, level, low, high)
+    links.cross(wanted)
+    (place, border), beside = links.places(), links.pairs()
+    del links
+    total = len(place)
     points = np.empty((total + total // 4 + 1, 2), np.float32)
     first, ends = np.empty(total // 2 + 2, np.int32), np.empty((total // 2 + 1, 2), np.int32)
     n = _levels.follow(beside, place, border, points, first, ends)

@@ -147,10 +147,7 @@ def cut(walls: Walls, lines: curves.Polylines, painted: Floats, slack: tuple[Flo
     points = np.ascontiguousarray(lines.points)
     while True:
         who, wall_at, where, sine = np.empty(room, np.int64), np.empty(room, np.int64), np.empty(room), np.empty(room)
-        found = _crossings.crossings(
-            points, lines.first, walls.segments, walls.begin, walls.items, walls.columns, walls.rows,
-            0.0, 0.0, CELL_PT, who, wall_at, where, sine,
-        )  # fmt: skip
+        found = _crossings.crossings(points, lines.first, walls, CELL_PT, who, wall_at, where, sine)
         if found <= room:
             break
         room = found

@@ -11,16 +11,17 @@ from libc.math cimport fabs, sqrt
 
 
 def crossings(
-    double[:, ::1] points, long long[::1] first, double[:, ::1] walls, long long[::1] begin, long long[::1] items,
-    Py_ssize_t columns, Py_ssize_t rows, double left, double top, double cell, long long[::1] who, long long[::1] which,
+    double[:, ::1] points, long long[::1] first, lines, double cell, long long[::1] who, long long[::1] which,
     double[::1] where, double[::1] sine,
-):
-    """Crossings of polylines with wall segments (m, 4); returns how many there are, also beyond the room for them.
+) -> int:
+    """Crossings of polylines with the segments of `walls.Walls`; returns how many there are, also beyond the room.
 
-    The walls near a grid cell (row-major, columns × rows cells from left, top) are items[begin[c] : begin[c + 1]],
-    and each is in the list of every cell that its bounding box touches. A crossing is told as the polyline, the wall,
-    the place on the polyline counted in points, and the sine of the angle.
+    A crossing is told as the polyline, the wall, the place on the polyline counted in points, and the sine of the
+    angle. cell: width and height of the cells that the segments are listed by.
     """
+    cdef double[:, ::1] walls = lines.segments
+    cdef long long[::1] begin = lines.begin, items = lines.items
+    cdef Py_ssize_t columns = lines.columns, rows = lines.rows
     cdef Py_ssize_t i, k, m, w, c0, c1, r0, r1, c, r
     cdef double px, py, dx, dy, ex, ey, det, s, t, lo, hi
     cdef Py_ssize_t n = 0
@@ -34,17 +35,17 @@ def crossings(
                 dy = points[k + 1, 1] - py
                 lo = px if dx > 0.0 else px + dx
                 hi = px + dx if dx > 0.0 else px
-                if hi < left or lo >= left + columns * cell:
+                if hi < 0.0 or lo >= columns * cell:
                     continue
-                c0 = <Py_ssize_t>((lo - left) / cell) if lo > left else 0
-                c1 = <Py_ssize_t>((hi - left) / cell)
+                c0 = <Py_ssize_t>(lo / cell) if lo > 0.0 else 0
+                c1 = <Py_ssize_t>(hi / cell)
                 c1 = columns - 1 if c1 >= columns else c1
                 lo = py if dy > 0.0 else py + dy
                 hi = py + dy if dy > 0.0 else py
-                if hi < top or lo >= top + rows * cell:
+                if hi < 0.0 or lo >= rows * cell:
                     continue
-                r0 = <Py_ssize_t>((lo - top) / cell) if lo > top else 0
-                r1 = <Py_ssize_t>((hi - top) / cell)
+                r0 = <Py_ssize_t>(lo / cell) if lo > 0.0 else 0
+                r1 = <Py_ssize_t>(hi / cell)
                 r1 = rows - 1 if r1 >= rows else r1
                 for r in range(r0, r1 + 1):
                     for c in range(c0, c1 + 1):
