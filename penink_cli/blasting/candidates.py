@@ -55,21 +55,23 @@ class Candidates:
 def between_walls(
     points: Floats,
     first: Ints,
-    joined: npt.NDArray[np.bool_],
-    slack: Floats,
     widths: Floats,
     painted: float,
     borders: walls.Walls,
-    sheet: Sheet,
     rank: Floats,
+    joined: npt.NDArray[np.bool_] | None = None,
+    slack: Floats | None = None,
 ) -> Candidates:
     """Candidates from curves, cut where they cross walls.
 
-    joined: (n, 2) whether another stroke goes on from the curve's start and its end.
-    slack: (n, 2) which part of it, at its start and at its end, is there only to reach a wall.
+    widths: (n,) of the pen; painted: what a device makes of it, points.
     rank: (n,) those of lower rank are tried first.
+    joined: (n, 2) whether another stroke goes on from the curve's start and its end; none does by default.
+    slack: (n, 2) which part of it, at its start and at its end, is there only to reach a wall; none by default.
     """
     n = len(first) - 1
+    joined = np.zeros((n, 2), bool) if joined is None else joined
+    slack = np.zeros((n, 2)) if slack is None else slack
     pieces = curves.pieces_of(points, first, STEP_PT)
     lines = curves.sample(points, first, pieces)
     count = np.diff(lines.first) - 1
@@ -134,9 +136,7 @@ def swept(
     hatch = sweep.hatch(sheet, coverage, layer, pen, finest, gain_pt, seed)
     rank = np.random.default_rng([seed, 3]).random(len(hatch.joined))
     painted = sweep.painted_width(layer.angle, pen, gain_pt)
-    return between_walls(
-        hatch.points, hatch.first, hatch.joined, hatch.slack, hatch.widths, painted, borders, sheet, rank
-    )
+    return between_walls(hatch.points, hatch.first, hatch.widths, painted, borders, rank, hatch.joined, hatch.slack)
 
 
 def lattice(
@@ -175,10 +175,7 @@ def lattice(
     vv = turn[:, None] * uu + bow[:, None] * np.array([-0.5, 0.85, 0.85, -0.5])
     cubics = middle[:, None, :] + uu[..., None] * along + vv[..., None] * across
     points, first = cubics.reshape(-1, 2), np.arange(len(half) + 1) * 4
-    none = np.zeros((len(half), 2))
-    return between_walls(
-        points, first, none.astype(bool), none, np.full(len(half), pen), painted, borders, sheet, -due
-    )
+    return between_walls(points, first, np.full(len(half), pen), painted, borders, -due)
 
 
 def along_edges(sheet: Sheet, pen: float, borders: walls.Walls, darkest_from: float) -> Candidates:
@@ -194,10 +191,7 @@ def along_edges(sheet: Sheet, pen: float, borders: walls.Walls, darkest_from: fl
         parts += [line[a : b + 1] for a, b in itertools.pairwise(cuts)]
     first = curves.starts(np.array([len(part) for part in parts], np.int64))
     points, first = over_chords(np.concatenate([np.zeros((0, 2)), *parts]), first, EDGE_TOLERANCE_PT)
-    none, widths = np.zeros((len(parts), 2)), np.full(len(parts), pen)
-    return between_walls(
-        points, first, none.astype(bool), none, widths, painted, borders, sheet, np.zeros(len(parts))
-    )  # fmt: skip
+    return between_walls(points, first, np.full(len(parts), pen), painted, borders, np.zeros(len(parts)))
 
 
 def rim(sheet: Sheet, pen: float, borders: walls.Walls, darkest_from: float, seed: int) -> Candidates:
@@ -230,8 +224,7 @@ def rim(sheet: Sheet, pen: float, borders: walls.Walls, darkest_from: float, see
     start, end = start[dark], end[dark]
     points = np.stack([start, start + (end - start) / 3, end - (end - start) / 3, end], axis=1).reshape(-1, 2)
     n = len(start)
-    none, within = np.zeros((n, 2)), replace(borders, box=(d, d, w - d, h - d))
+    within = replace(borders, box=(d, d, w - d, h - d))
     return between_walls(
-        points, np.arange(n + 1) * 4, none.astype(bool), none, np.full(n, pen), pen + sheet.gain_pt, within, sheet,
-        np.zeros(n),
+        points, np.arange(n + 1) * 4, np.full(n, pen), pen + sheet.gain_pt, within, np.zeros(n)
     )  # fmt: skip

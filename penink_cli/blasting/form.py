@@ -283,8 +283,7 @@ class Form:
 
     def _candidates(self, strokes: DrawnStrokes, widths: Floats, pen: float, rank: Floats) -> candidates.Candidates:
         return candidates.between_walls(
-            strokes.points, strokes.first, strokes.joined, strokes.slack, widths, self._painted(pen), self.borders,
-            self.sheet, rank,
+            strokes.points, strokes.first, widths, self._painted(pen), self.borders, rank, strokes.joined, strokes.slack
         )  # fmt: skip
 
     def _painted(self, pen: float) -> float:
@@ -327,16 +326,16 @@ def _pressed(coverage: Plane, finest: float, pen: float) -> Plane:
 def _carried_on(density: Plane, cover: Plane, sigma: float) -> Plane:
     """Densities, and where next to nothing is covered those of the surroundings (σ in nodes)."""
     known = density * np.minimum(cover * np.float32(1 / FAINT), 1)
-    weight = _blurred(known, sigma)
+    weight = blurred(known, sigma)
     around = np.maximum(
-        _blurred(known * density, sigma) / np.maximum(weight, np.float32(1e-6)), np.float32(SPARSEST)
+        blurred(known * density, sigma) / np.maximum(weight, np.float32(1e-6)), np.float32(SPARSEST)
     )  # fmt: skip
     t = np.clip((cover - np.float32(FAINT / 4)) * np.float32(4 / (3 * FAINT)), 0, 1)
     t = t * t * (3 - 2 * t)
     return np.where(density > around, density, density * t + around * (1 - t)).astype(np.float32)
 
 
-def _blurred(values: Plane, sigma: float) -> Plane:
+def blurred(values: Plane, sigma: float) -> Plane:
     """Values (rows, columns) blurred by about a Gaussian: means over boxes, three times, of means of 4 × 4 cells."""
     rows, columns = values.shape
     padded = np.pad(values, ((0, -rows % 4), (0, -columns % 4)), mode="edge")

@@ -43,7 +43,7 @@ def joined(lines: LevelLines, spacing: float) -> LevelLines:
     same = (neighbours[one] == neighbours[other, ::-1]) & (neighbours[one] >= 0)
     one, other = one[same.any(axis=1)], other[same.any(axis=1)]
     partner = _paired(one, other, line, len(tip))
-    return _chained(points, lines, open_, partner, ahead, spacing)
+    return _chained(points, lines, open_, partner, ahead)
 
 
 def _facing(at: Floats, ahead: Floats, spacing: float) -> tuple[Ints, Ints]:
@@ -114,7 +114,7 @@ def _paired(one: Ints, other: Ints, line: Ints, count: int) -> Ints:
 
 
 def _chained(
-    points: Floats, lines: LevelLines, open_: Ints, partner: Ints, ahead: Floats, spacing: float
+    points: Floats, lines: LevelLines, open_: Ints, partner: Ints, ahead: Floats
 ) -> LevelLines:
     """The lines with such tips joined; each stands where the first of its chain stood."""
     number = np.full(len(lines.ring), -1, np.int64)

@@ -81,11 +81,8 @@ class StrokeSet(Form):
         at = np.clip((middle / cell).astype(np.int64), 0, (sheet.columns - 1, sheet.rows - 1))
         share = self._pens[which[:placed]] / pen
         widths = share * sweep.pressed(coverage[at[:, 1], at[:, 0]], finest, pen)
-        none = np.zeros((placed, 2))
-        return candidates.between_walls(
-            points, starts, none.astype(bool), none, widths, self._painted(pen), self.borders, sheet,
-            np.arange(placed, dtype=np.float64),
-        )  # fmt: skip
+        rank = np.arange(placed, dtype=np.float64)
+        return candidates.between_walls(points, starts, widths, self._painted(pen), self.borders, rank)
 
     def between(
         self, i: int, pen: float, length: float, least: float, error: Cells, seed: int

@@ -7,6 +7,6 @@ edge_list       edges; lines: telling lines; directions: fields; strokes; textur
 svg_texture     drawings read as textures
 illustration    the manifest, and what it names; or all of that in one file:
   archive         the members of a `.penink`; parts: all but the manifest in one of them
-  compact         samples, fields, texts in few bytes; compact_edges, compact_lines
+  compact         samples, fields, texts in few bytes; compact_edges, compact_lines; members: what they share
 recognise       what a file is, for the error line of who gave the wrong one; signatures: how pictures begin
 """

@@ -1,7 +1,7 @@
 """Samples, directions and texts in as few bytes as they can be: members of a packed illustration.
 
-Each begins with four bytes that say what it is, then whole numbers (seven bits a byte, low ones
-first, the eighth set on all but the last), then one stretch of the adaptive code of `_compiled/coder`:
+Each is what `members` says: four bytes, whole numbers (seven bits a byte, low ones first, the eighth set on all but
+the last), then one stretch of the adaptive code of `_compiled/coder`:
 
 =========  =========================================  ==========================================
 ``PIs1``   width, height, maxval                      samples, row by row, by their neighbours
@@ -30,6 +30,7 @@ from penink_cli.formats._compiled import cuts as _cuts
 from penink_cli.formats._compiled import samples as _samples
 from penink_cli.formats._compiled.coder import Coder
 from penink_cli.formats._compiled.samples import FITTED_LEVELS, FITTED_SAMPLES
+from penink_cli.formats.members import check_end, finished, header, written_numbers
 from penink_cli.ground.errors import FormatError, LimitError
 from penink_cli.ground.model import Directions, EdgeList, Floats, GreyImage, Ints
 
@@ -41,12 +42,10 @@ ANGLES, ANGLES_1 = 32, 48  # of a half turn: 0°, 45° and 90° are among them
 SURE = 7  # the highest level of confidence
 BLOCK = 4  # samples along a side that share one
 MAX_FIELD = 1 << 20  # samples of a direction field
-MAX_GRID = 1 << 24  # points along a side
 # Decoding takes .04 µs a sample where all is paper (up to 2 where it is fitted, of which there are fewer), .3 µs a byte
-# of text and up to 3 µs a byte of code: with these limits some 2 seconds a member, 3 at most.
+# of text and up to 3 µs a byte of code: with these limits and `members.MAX_CODE` 3 seconds a member at the most.
 MAX_SAMPLES = 1 << 24
 MAX_TEXT = 1 << 20
-MAX_CODE = 1 << 20
 
 _SPACING = 16  # of samples, in the whole numbers by which it is told what an edge hides
 # Edges that pass more cells than so many a sample, and some, hide nothing: telling what they do would take too long.
@@ -79,9 +78,9 @@ def samples_bytes(image: GreyImage, edges: EdgeList | None = None) -> bytes:
     values = np.ascontiguousarray(image.values, np.int32)
     if w * h <= FITTED_SAMPLES and image.maxval < FITTED_LEVELS:
         _samples.fitted(coder, values, image.maxval, _hidden(edges, w, h))
-        return SAMPLES_FITTED + written_numbers(w, h, image.maxval, int(beside)) + _finished(coder)
+        return SAMPLES_FITTED + written_numbers(w, h, image.maxval, int(beside)) + finished(coder)
     _samples.by_neighbours(coder, values, image.maxval, _hidden(edges, w, h) if beside else None)
-    return (SAMPLES_BESIDE if beside else SAMPLES) + written_numbers(w, h, image.maxval) + _finished(coder)
+    return (SAMPLES_BESIDE if beside else SAMPLES) + written_numbers(w, h, image.maxval) + finished(coder)
 
 
 def samples_from(data: bytes, max_pixels: int, edges: EdgeList | None = None) -> GreyImage:
@@ -91,7 +90,7 @@ def samples_from(data: bytes, max_pixels: int, edges: EdgeList | None = None) ->
     """
     magic = data[:4] if data[:4] in ALL_SAMPLES else SAMPLES
     fitted = magic == SAMPLES_FITTED
-    (width, height, maxval, *known), rest = _header(data, magic, 4 if fitted else 3)
+    (width, height, maxval, *known), rest = header(data, magic, 4 if fitted else 3)
     beside = bool(known[0]) if fitted else magic == SAMPLES_BESIDE
     if not (width and height and 1 <= maxval < (FITTED_LEVELS if fitted else 65536)) or max(known, default=0) > 1:
         raise FormatError(f"samples of {width} x {height} with maxval {maxval}")
@@ -106,7 +105,7 @@ def samples_from(data: bytes, max_pixels: int, edges: EdgeList | None = None) ->
         _samples.fitted(coder, values, maxval, _hidden(edges if beside else None, width, height))
     else:
         _samples.by_neighbours(coder, values, maxval, _hidden(edges, width, height) if beside else None)
-    _check_end(coder)
+    check_end(coder)
     return _grey(values, maxval)
 
 
@@ -132,18 +131,18 @@ def text_bytes(text: bytes) -> bytes:
         raise LimitError(f"a text of {len(text)} bytes; {MAX_TEXT} are allowed")
     coder = Coder()
     coder.text(np.frombuffer(bytearray(text), np.uint8))
-    return TEXT + written_numbers(len(text)) + _finished(coder)
+    return TEXT + written_numbers(len(text)) + finished(coder)
 
 
 def text_from(data: bytes) -> bytes:
     """What `text_bytes` wrote."""
-    (size,), rest = _header(data, TEXT, 1)
+    (size,), rest = header(data, TEXT, 1)
     if size > MAX_TEXT:
         raise LimitError(f"a text of {size} bytes; {MAX_TEXT} are allowed")
     values = np.zeros(size, np.uint8)
     coder = Coder(rest)
     coder.text(values)
-    _check_end(coder)
+    check_end(coder)
     return values.tobytes()
 
 
@@ -167,14 +166,14 @@ def directions_bytes(field: Directions) -> bytes:
     coder = Coder()
     _code_angles(coder, nearest, ANGLES)
     _samples.by_neighbours(coder, _by_blocks(field.confidence), SURE)
-    return DIRECTIONS + written_numbers(columns, rows) + _finished(coder)
+    return DIRECTIONS + written_numbers(columns, rows) + finished(coder)
 
 
 def directions_from(data: bytes) -> Directions:
     """What `directions_bytes` wrote."""
     first = data[:4] == DIRECTIONS_1
     count = ANGLES_1 if first else ANGLES
-    (columns, rows), rest = _header(data, DIRECTIONS_1 if first else DIRECTIONS, 2)
+    (columns, rows), rest = header(data, DIRECTIONS_1 if first else DIRECTIONS, 2)
     if not (columns and rows):
         raise FormatError(f"directions of {columns} x {rows} samples")
     _check_field(columns, rows)
@@ -183,7 +182,7 @@ def directions_from(data: bytes) -> Directions:
     _code_angles(coder, nearest, count)
     levels = np.zeros((-(-rows // BLOCK), -(-columns // BLOCK)), np.int32)
     _samples.by_neighbours(coder, levels, SURE)
-    _check_end(coder)
+    check_end(coder)
     if not levels.any():
         raise FormatError("confidence is 0 everywhere")
     cos2, sin2 = np.moveaxis(_angles(count)[nearest], 2, 0)
@@ -251,61 +250,3 @@ def _size(value: int) -> int:
 def _within_3(value: int) -> int:
     """0 … 6."""
     return max(-3, min(3, value)) + 3
-
-
-# ------------------------------------------------------------------------------ headers
-
-
-def written_numbers(*values: int) -> bytes:
-    """Whole numbers from 0, seven bits a byte."""
-    out = bytearray()
-    for value in values:
-        while value > 127:
-            out.append(value & 127 | 128)
-            value >>= 7
-        out.append(value)
-    return bytes(out)
-
-
-def read_numbers(data: bytes, at: int, count: int) -> tuple[list[int], int]:
-    """So many whole numbers from byte `at`, and where the next byte is. Raises FormatError."""
-    values = []
-    for _ in range(count):
-        value = shift = 0
-        while True:
-            if at >= len(data) or shift > 35:
-                raise FormatError("truncated in its header" if at >= len(data) else "a header number is too large")
-            value |= (data[at] & 127) << shift
-            shift += 7
-            at += 1
-            if data[at - 1] < 128:
-                break
-        values.append(value)
-    return values, at
-
-
-def _header(data: bytes, magic: bytes, count: int) -> tuple[list[int], bytes]:
-    """The whole numbers after the magic bytes, and what follows them."""
-    if data[:4] != magic:
-        raise FormatError(f"begins with {data[:4]!r}; {magic!r} is expected")
-    values, at = read_numbers(data, 4, count)
-    _check_size(len(data) - at)
-    return values, data[at:]
-
-
-def _finished(coder: Coder) -> bytes:
-    code: bytes = coder.finish()
-    _check_size(len(code))
-    return code
-
-
-def _check_size(size: int) -> None:
-    if size > MAX_CODE:
-        raise LimitError(f"{size} bytes of code; {MAX_CODE} are allowed")
-
-
-def _check_end(coder: Coder) -> None:
-    if not coder.end() or coder.overrun:
-        raise FormatError("truncated or damaged")
-    if coder.rest:
-        raise FormatError(f"{coder.rest} bytes after its end")

@@ -19,7 +19,7 @@ import numpy as np
 
 from penink_cli.formats import edge_list
 from penink_cli.formats._compiled.coder import Coder
-from penink_cli.formats.compact import MAX_GRID, _check_end, _finished, _header, written_numbers
+from penink_cli.formats.members import MAX_GRID, check_end, finished, header, written_numbers
 from penink_cli.geometry.trails import Trail, trails
 from penink_cli.ground.errors import FormatError
 from penink_cli.ground.model import EdgeList, Ints
@@ -74,13 +74,13 @@ def edges_bytes(edges: EdgeList, columns: int, rows: int) -> bytes:
                 total = math.fsum(length[e] for e in mine)
                 means.append(math.floor(math.fsum(strength[e] * length[e] for e in mine) / total * STRENGTHS + 0.5))
             _code_strengths(coder, [vertices for vertices, _ in found], means)
-    return EDGES + head + _finished(coder)
+    return EDGES + head + finished(coder)
 
 
 def edges_from(data: bytes) -> EdgeList:
     """What `edges_bytes` wrote, each vertex and edge sound by itself (see `edge_list.check`)."""
     first = data[:4] == EDGES_1
-    (width, height, columns, rows, count, strong), rest = _header(data, EDGES_1 if first else EDGES, 6)
+    (width, height, columns, rows, count, strong), rest = header(data, EDGES_1 if first else EDGES, 6)
     if not (1 <= width <= edge_list.MAX_SIDE and 1 <= height <= edge_list.MAX_SIDE):
         raise FormatError(f"edges of a frame {width} x {height}")
     if not (1 <= columns <= MAX_GRID and 1 <= rows <= MAX_GRID) or strong > 1:
@@ -96,7 +96,7 @@ def edges_from(data: bytes) -> EdgeList:
         means = [0] * len(stretches)
         _code_strengths(coder, chains.trails, means)
         steps = [mean for mean, (_, begin, end) in zip(means, stretches, strict=True) for _ in range(begin, end)]
-    _check_end(coder)
+    check_end(coder)
     vertices = np.array(chains.points, np.float64).reshape(-1, 2) * (width, height) / (columns, rows)
     strength = np.array(steps, np.float64) / STRENGTHS if strong else None
     found = EdgeList(width, height, vertices, np.array(chains.ends, np.int64).reshape(-1, 2), strength)

@@ -19,7 +19,7 @@ import numpy.typing as npt
 
 from penink_cli.formats import lines as lines_format
 from penink_cli.formats._compiled.coder import Coder
-from penink_cli.formats.compact import MAX_GRID, _check_end, _finished, _header, written_numbers
+from penink_cli.formats.members import MAX_GRID, check_end, finished, header, written_numbers
 from penink_cli.geometry import curves
 from penink_cli.ground.errors import FormatError, LimitError
 from penink_cli.ground.model import Floats, Ints, Lines
@@ -88,14 +88,14 @@ def lines_bytes(lines: Lines) -> bytes:
         coder.number(len(points), _COUNT, int(breadth > 0))
         _code_path_2(coder, points, columns, rows)
         _code_weights_2(coder, pressed)
-    return LINES + written_numbers(lines.width, lines.height, len(items)) + _finished(coder)
+    return LINES + written_numbers(lines.width, lines.height, len(items)) + finished(coder)
 
 
 def lines_from(data: bytes) -> Lines:
     """What `lines_bytes` wrote, each line sound. Raises FormatError, and LimitError."""
     magic = data[:4] if data[:4] in _STEPS else LINES
     first, kept = magic == LINES_1, _STEPS[magic]
-    (width, height, count), rest = _header(data, magic, 3)
+    (width, height, count), rest = header(data, magic, 3)
     if not (1 <= width <= lines_format.MAX_SIDE and 1 <= height <= lines_format.MAX_SIDE):
         raise FormatError(f"lines of a frame {width} x {height}")
     if count > 8 * len(rest) + 64:
@@ -132,7 +132,7 @@ def lines_from(data: bytes) -> Lines:
         sizes.append(size)
         points += path
         weights += pressed
-    _check_end(coder)
+    check_end(coder)
     begins = np.zeros(len(sizes) + 1, np.int64)
     np.cumsum(sizes, out=begins[1:])
     step = np.array([width / columns, height / rows])

@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from itertools import accumulate, pairwise
 
-from penink_cli.formats.compact import read_numbers, written_numbers
+from penink_cli.formats.members import read_numbers, written_numbers
 from penink_cli.ground.errors import FormatError, LimitError
 
 PARTS = b"PIp1"

@@ -27,7 +27,6 @@ PHOTO_PIXELS = 250_000_000  # of a photograph and of samples as large: telephone
 ENLARGED_PIXELS = 4 * PHOTO_PIXELS  # what the chain makes of such a photograph
 ALPHA = "alpha"
 NAMED = {"white": (255, 255, 255), "black": (0, 0, 0), "grey": (128, 128, 128)}
-_OPTIONS = ("background", "profile", "strict", "lenient")
 _META = "penink.photo"
 _photos: dict[str | None, tuple[changes.State, ColourImage | GreyImage]] | None = None  # remembered, by their paths
 _edges: tuple[changes.State, EdgeList] | None = None  # the last ones read from the workbench, and their text

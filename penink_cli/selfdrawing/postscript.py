@@ -25,11 +25,10 @@ INSTEAD = {
     "telling.ps": "/PlanTold { } def /PaintTold { } def",
     "outline.ps": "/PlanOutlines { } def /PaintOutlines { } def",
 }
-PACKINGS = ("flate", "lzw", "readable")
 
 
 def write(illustration: Illustration, packing: str = "flate") -> bytes:
-    """The EPS. packing: flate (Level 3), lzw (Level 2), or readable."""
+    """The EPS. packing: flate (Level 3), lzw (Level 2), or readable: the text that people read."""
     parts = layers(illustration)
     width, height = illustration.width, illustration.height
     head = (

@@ -12,7 +12,7 @@ from penink_cli.formats.photo.pillow import decoded, with_meaning
 from penink_cli.ground.errors import FormatError
 
 PIXELS = (b"VP8 ", b"VP8L", b"ALPH", b"VP8X", b"ANIM", b"ANMF")
-ANIMATED, ALPHA = 0x02, 0x10  # flags of VP8X
+ALPHA = 0x10  # a flag of VP8X
 
 
 def read(encoded: bytes, max_pixels: int, verdict: Verdict) -> Decoded:
