@@ -20,7 +20,7 @@ from penink_cli.ground.model import EdgeList, Ints
 from penink_cli.reconstruction.camera import camera_blur
 from penink_cli.reconstruction.enlarge import reconstruct
 from penink_cli.reconstruction.extraction import extract_samples
-from penink_cli.reconstruction.grid import SEEN_PT, VIEW_PX
+from penink_cli.reconstruction.grid import SEEN_PT, SEEN_PX, VIEW_PX
 from penink_cli.reconstruction.reduction import reduce
 from penink_cli.reconstruction.shrinking import shrunk
 
@@ -106,7 +106,9 @@ def _saved(
     edges: EdgeList, chains: list[list[int]], photo: Grey32, seen_at: float, threads: int | None
 ) -> npt.NDArray[np.float64]:
     """What each chain saves (c,), in squared grey levels over a picture of PICTURE_PX."""
-    photo = shrunk(photo, max(1.0, float(np.sqrt(photo.size / VIEW_PX))))
+    # a finer view tells no more of what is blurred by so much
+    finest = SEEN_PT * photo.shape[1] / seen_at / SEEN_PX
+    photo = shrunk(photo, max(1.0, finest, float(np.sqrt(photo.size / VIEW_PX))))
     height, width = photo.shape
     columns = max(2, min(width // _LEAST_PX, round(seen_at / _SPACING_PT)))
     rows = min(height, max(1, round(columns * height / width)))
