@@ -25,8 +25,9 @@ FROM = 0.85
 LINE_PT = 0.3
 #: Of the tone the mean around counts (σ): what is finer than the lines' distance they cannot show.
 AROUND_PT = 2.0
-#: The least white for which there are lines, and the most that there may be: closer lines would leave no black between.
-LEAST, MOST = 0.012, 0.22
+#: The least white for which there are lines: farther apart they are scratches, and black as a whole is near enough. The
+#: most that there may be: closer lines would leave no black between.
+LEAST, MOST = 0.035, 0.22
 #: Lines are told by places so far apart, points; they end in points over TAPER_PT, and shorter ones are left out.
 STEP_PT, TAPER_PT, SHORTEST_PT = 1.0, 5.0, 12.0
 #: Rounds in which their widths are corrected, how much of what is wrong each round corrects, and the greatest width.
