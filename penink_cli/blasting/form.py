@@ -84,6 +84,8 @@ class Form:
     fine_shortest_pt = 20.5
     #: By how much of tone the eye must see a place too light for short strokes to fill it.
     filler_seen = 0.15
+    #: How many times short strokes count their own ink at the least.
+    caution = 1.0
 
     def __init__(self, sheet: Sheet, cos2: Cells, sin2: Cells, layers: tuple[HatchLayer, ...], borders: walls.Walls):
         self.sheet = sheet

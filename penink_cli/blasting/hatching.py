@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 import numpy.typing as npt
@@ -25,6 +26,7 @@ from penink_cli.blasting.form import Form
 from penink_cli.blasting.shares import ALONE, shares
 from penink_cli.blasting.sheet import Cells, Sheet, Terms
 from penink_cli.blasting.stroke_set import StrokeSet
+from penink_cli.ground import threads as threading
 from penink_cli.ground.device import MEAN
 from penink_cli.ground.model import EdgeList, Floats, HatchLayer, Strokes
 
@@ -88,6 +90,13 @@ class Hatch:
     form: Form | None
     seed: int
     sweeps: int = SWEEPS
+
+    def laid(self, sheet: Sheet, covers: list[Floats]) -> list[candidates.Candidates]:
+        """The strokes of all layers that cover each cell (rows, columns) as asked."""
+        if isinstance(self.form, StrokeSet):  # its passes know nothing of threads, so they run at the same time
+            passes = [partial(self.swept, sheet, i, cover) for i, cover in enumerate(covers)]
+            return list(threading.in_order(iter(passes), sheet.threads, ahead=len(passes)))
+        return [self.swept(sheet, i, covers.pop(0)) for i in range(len(self.layers))]
 
     def swept(self, sheet: Sheet, i: int, cover: Floats) -> candidates.Candidates:
         """The strokes of layer i that cover each cell (rows, columns) as asked."""
@@ -157,7 +166,7 @@ def lines(sheet: Sheet, hatch: Hatch, tick: Callable[[], None]) -> Strokes:
             smooth = (sheet.low_pass(density) if turn else wide) / sheet.weight - there
             smooth = np.maximum(smooth, 0) / np.maximum(1 - there, np.float32(BARE))
             covers = layer_shares(sheet, smooth, density, hatch.layers, along_form)
-            laid = [hatch.swept(sheet, i, covers.pop(0)) for i in range(len(hatch.layers))]
+            laid = hatch.laid(sheet, covers)
         sheet.clear()
         if turn:
             sheet.owe(wanted)
@@ -238,7 +247,9 @@ def fine_strokes(
     if form:
         out.append(candidates.along_edges(sheet, min(pens), borders, EDGE_TONE).placed(sheet, ALONG_EDGES))
     seen = sheet.spread(sheet.error()) - np.float32(FINE_SEEN)
-    terms = replace(FINE_STROKES, shortest_pt=form.fine_shortest_pt) if form else FINE_STROKES
+    terms = FINE_STROKES
+    if form:
+        terms = replace(terms, shortest_pt=form.fine_shortest_pt, caution=max(terms.caution, form.caution))
     for i, (layer, pen) in enumerate(zip(layers, pens)):
         if layer.spacing_pt > 0:
             continue  # what fills a gap would lie closer than it may
@@ -258,14 +269,14 @@ def fillers(sheet: Sheet, form: Form, pens: list[float], seed: int) -> list[Stro
     Lines that follow a field end where they come too close, and at edges of the tone; what they leave is too small for
     a stroke of full length and too dark for a fine one.
     """
-    out = []
+    terms, out = replace(FILLERS, caution=max(FILLERS.caution, form.caution)), []
     for i, (layer, pen) in enumerate(zip(form.layers, pens)):
         if layer.spacing_pt > 0:
             continue
         sheet.owe(sheet.tone)
         seen = sheet.spread(sheet.error()) - np.float32(form.filler_seen)
         part = form.fillers(i, pen, seen, seed * 64 + i)
-        out.append(part.placed(sheet, FILLERS))
+        out.append(part.placed(sheet, terms))
     return out
 
 

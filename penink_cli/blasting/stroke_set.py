@@ -27,6 +27,9 @@ from penink_cli.ground.model import Floats, HatchLayer, Ints, Strokes
 PASSES = ((0.0, 0.72, 0.0), (0.68, 0.99, 25.0))
 #: The part of its tone that a cell may lack without needing a further stroke.
 STOP = 0.3
+#: The same where one pen draws all. No pressure evens the tone out there, and strokes that fill what is left make it
+#: too dark: they count their own ink CAUTION times at the least. Photographs were up to 2 % too dark, now within .4.
+ONE_PEN_STOP, CAUTION = 0.15, 2.5
 #: How far a stroke's ink counts, in square roots of its area over the tone: the lighter, the wider.
 SPREAD = 0.45
 #: The least and greatest scale of an example, and the most that it is turned from the field, degrees.
@@ -50,6 +53,9 @@ class StrokeSet(Form):
     ):
         super().__init__(sheet, cos2, sin2, passes(examples), borders)
         self._one_pen = pen_pt is not None
+        self._stop = ONE_PEN_STOP if self._one_pen else STOP
+        if self._one_pen:
+            self.caution = CAUTION
         pieces = curves.pieces_of(examples.points, examples.first, STEP_PT)
         lines = curves.sample(examples.points, examples.first, pieces)
         counts = np.diff(lines.first)
@@ -74,7 +80,7 @@ class StrokeSet(Form):
         placed = growth.Growth(
             wanted, wanted.copy(), *field, cell, self._lines_of.points, self._lines_of.first,
             self._pens + MEAN * sheet.gain_pt, np.zeros_like(sheet.bits), SPREAD, SCALES[1], seed + 1,
-        ).place(STOP, math.radians(TURN), *SCALES, TRIES, out, first, which)  # fmt: skip
+        ).place(self._stop, math.radians(TURN), *SCALES, TRIES, out, first, which)  # fmt: skip
         first = first[: placed + 1]
         points, starts = smooth(out, first)
         middle = out[(first[:-1] + first[1:]) // 2] if placed else np.zeros((0, 2))

@@ -113,7 +113,7 @@ def tone() -> None:
 
 def pens() -> None:
     print("one 0.3 mm pen along the form: inches    RMS   bias   (spread ≤ .5)")
-    for texture in ("crosshatch", "form"):
+    for texture in ("crosshatch", "form", "fur", "hair", "grass", "barb"):
         biases = []
         for inches in (3, 6, 12):
             wanted, strokes = draw("camera", inches, texture, True, pen_pt=0.3 / 25.4 * 72)

@@ -74,6 +74,14 @@ def test_one_pen_draws_all():
     assert rms < 2 and abs(bias) < 0.4
 
 
+@pytest.mark.parametrize("name", SETS)
+def test_one_pen_is_as_dark_as_it_should(name):
+    """Short strokes of a broad pen that fill what is left were too dark by up to 2 %."""
+    ramp = np.linspace(0.1, 0.8, 96)[None].repeat(64, axis=0)
+    strokes = blast(ramp, 432, 288, None, find_texture(name), directions=field(waves), pen_pt=0.85)
+    assert abs(measures.tone_figures(strokes, ramp)[1]) < 0.5
+
+
 @pytest.mark.parametrize("rule", ["strict", "threshold"])
 def test_other_rules_know_no_sets(rule):
     with pytest.raises(ParameterError, match=f"fur is a set of strokes, for the rule best and not {rule}"):
