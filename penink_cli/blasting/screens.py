@@ -356,7 +356,10 @@ def _short(segment: Floats) -> list[Floats]:
 
 
 def table(texture: Texture, pen_pt: float | None = None) -> ThresholdTable:
-    """The threshold table of any texture; pen_pt: one pen for all its strokes."""
+    """The threshold table of a texture; pen_pt: one pen for all its strokes.
+
+    Raises ParameterError for a set of strokes.
+    """
     if texture.oriented:
         raise ParameterError(f"the texture {texture.name} is a set of strokes, which only blast and render can lay")
     pen = pen_pt or (float(median(texture.strokes.widths)) if len(texture.strokes) else 0.4)

@@ -135,7 +135,7 @@ def text_bytes(text: bytes) -> bytes:
 
 
 def text_from(data: bytes) -> bytes:
-    """What `text_bytes` wrote."""
+    """What `text_bytes` wrote. Raises FormatError and LimitError."""
     (size,), rest = header(data, TEXT, 1)
     if size > MAX_TEXT:
         raise LimitError(f"a text of {size} bytes; {MAX_TEXT} are allowed")
@@ -170,7 +170,7 @@ def directions_bytes(field: Directions) -> bytes:
 
 
 def directions_from(data: bytes) -> Directions:
-    """What `directions_bytes` wrote."""
+    """What `directions_bytes` wrote. Raises FormatError and LimitError."""
     first = data[:4] == DIRECTIONS_1
     count = ANGLES_1 if first else ANGLES
     (columns, rows), rest = header(data, DIRECTIONS_1 if first else DIRECTIONS, 2)

@@ -78,7 +78,10 @@ def edges_bytes(edges: EdgeList, columns: int, rows: int) -> bytes:
 
 
 def edges_from(data: bytes) -> EdgeList:
-    """What `edges_bytes` wrote, each vertex and edge sound by itself (see `edge_list.check`)."""
+    """What `edges_bytes` wrote, each vertex and edge sound by itself (see `edge_list.check`).
+
+    Raises FormatError and LimitError.
+    """
     first = data[:4] == EDGES_1
     (width, height, columns, rows, count, strong), rest = header(data, EDGES_1 if first else EDGES, 6)
     if not (1 <= width <= edge_list.MAX_SIDE and 1 <= height <= edge_list.MAX_SIDE):

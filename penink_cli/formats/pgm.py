@@ -91,7 +91,10 @@ class _Again:
 
 
 def read_raster(stream: BinaryIO, source: str, max_pixels: int, magic: bytes) -> tuple[Values, int]:
-    """What follows the magic number of P2, P5 (values (h, w)) or P3, P6 (h, w, 3), and maxval."""
+    """What follows the magic number of P2, P5 (values (h, w)) or P3, P6 (h, w, 3), and maxval.
+
+    Raises FormatError, and LimitError for more than max_pixels and for what does not fit into memory.
+    """
     channels = 3 if magic in (b"P3", b"P6") else 1
     width, height, maxval = header_numbers(stream, source, 3)
     _check_maxval(maxval, source)
@@ -118,7 +121,10 @@ def _shown(found: bytes) -> str:
 
 
 def header_numbers(stream: BinaryIO, source: str, count: int) -> list[int]:
-    """Width, height and, where three are wanted, maxval, read up to and with the one white space before the raster."""
+    """Width, height and, where three are wanted, maxval, read up to and with the one white space before the raster.
+
+    Raises FormatError.
+    """
     numbers: list[int] = []
     place = ("width", "height", "maxval")
     value: int | None = None
@@ -162,7 +168,10 @@ def _checked(numbers: list[int], source: str) -> list[int]:
 
 
 def binary(stream: BinaryIO, source: str, count: int, maxval: int, row: int) -> Values:
-    """``count`` values of one byte each, or of two, the most significant first."""
+    """``count`` values of one byte each, or of two, the most significant first: (count,), 0 … maxval.
+
+    row: values in a row, to say where one is too large. Raises FormatError.
+    """
     stored = np.dtype(np.uint8) if maxval < 256 else np.dtype(">u2")
     flat: Values = np.empty(count, stored)
     view = flat.view(np.uint8).data

@@ -128,7 +128,7 @@ def _brief(value: Any) -> str:
 
 
 def member(container: Any, name: str, place: str = "") -> Any:
-    """A member that must be there."""
+    """A member that must be there. Raises FormatError."""
     try:
         return container[name]
     except KeyError:
@@ -136,7 +136,7 @@ def member(container: Any, name: str, place: str = "") -> Any:
 
 
 def header(document: Any, format_name: str, place: str = "") -> dict[str, Any]:
-    """An object that says ``"format": format_name, "version": 1``."""
+    """An object that says ``"format": format_name, "version": 1``. Raises FormatError."""
     where = f"{place}: " if place else ""
     if not isinstance(document, dict):
         raise FormatError(f"{where}an object is expected, found {quoted(document)}")
@@ -150,14 +150,14 @@ def header(document: Any, format_name: str, place: str = "") -> dict[str, Any]:
 
 
 def whole(value: Any, what: str, least: int, most: int) -> int:
-    """A whole number from ``least`` to ``most``; ``what`` names it in the error."""
+    """A whole number from ``least`` to ``most``. Raises FormatError, in which ``what`` names it."""
     if type(value) is not int or not least <= value <= most:
         raise FormatError(f"{what} is {quoted(value)}; a whole number from {least} to {most} is needed")
     return value
 
 
 def number(value: Any, what: str, least: float = -math.inf, most: float = math.inf) -> float:
-    """A number from ``least`` to ``most``; ``what`` names it in the error."""
+    """A number from ``least`` to ``most``. Raises FormatError, in which ``what`` names it."""
     try:
         if type(value) not in (int, float) or not least <= float(value) <= most:
             raise OverflowError
@@ -169,28 +169,28 @@ def number(value: Any, what: str, least: float = -math.inf, most: float = math.i
 
 
 def text(value: Any, what: str) -> str:
-    """A string."""
+    """A string. Raises FormatError, in which ``what`` names it."""
     if type(value) is not str:
         raise FormatError(f"{what} is {quoted(value)}; text is needed")
     return value
 
 
 def colour(value: Any, what: str) -> str:
-    """The value, which is ``#rrggbb``."""
+    """The value, which is ``#rrggbb``. Raises FormatError, in which ``what`` names it."""
     if not (isinstance(value, str) and re.fullmatch("#[0-9a-fA-F]{6}", value, re.ASCII)):
         raise FormatError(f"{what} {quoted(value)} is not #rrggbb")
     return value
 
 
 def array(value: Any, what: str) -> list[Any]:
-    """An array."""
+    """An array. Raises FormatError, in which ``what`` names it."""
     if type(value) is not list:
         raise FormatError(f"{what} is {quoted(value)}; an array is needed")
     return value
 
 
 def numbers(value: Any, what: str, each: str) -> Floats:
-    """An array of numbers as (n,); ``each`` names one of them (``strength``) in the error."""
+    """An array of numbers as (n,). Raises FormatError, in which ``each`` names one of them (``strength``)."""
     if not set(map(type, array(value, what))) <= {int, float}:
         _refuse_first(value, each, (int, float))
     try:
@@ -201,7 +201,7 @@ def numbers(value: Any, what: str, each: str) -> Floats:
 
 
 def pairs(value: Any, what: str, each: str) -> Floats:
-    """An array of pairs of numbers as (n, 2); ``each`` names one of them (``vertex``) in the error."""
+    """An array of pairs of numbers as (n, 2). Raises FormatError, in which ``each`` names one of them (``vertex``)."""
     return _table(value, what, each, (int, float), np.float64)
 
 

@@ -24,6 +24,8 @@ def plain_name(name: str) -> str:
 def paper_size(name: str) -> tuple[float, float]:
     """Width and height in points of a paper's name, or of WIDTHxHEIGHT as ``210x297mm``: one unit serves both.
 
+    Raises ParameterError.
+
     >>> paper_size("11x17in") == paper_size("11inx17in") == (792.0, 1224.0)
     True
     """

@@ -11,7 +11,10 @@ from penink_cli.ground.model import EdgeList, Floats, GreyImage
 
 
 def by_mask(photo: GreyImage, mask: GreyImage) -> Floats:
-    """The layer's share (h, w), 0 … 1, of each pixel: the mask's grey."""
+    """The layer's share (h, w), 0 … 1, of each pixel: the mask's grey.
+
+    Raises ParameterError where the two differ in size.
+    """
     if photo.values.shape != mask.values.shape:
         (h, w), (rows, columns) = photo.values.shape, mask.values.shape
         raise ParameterError(f"the mask has {columns} x {rows} pixels; the photo has {w} x {h}")

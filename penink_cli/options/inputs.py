@@ -314,7 +314,7 @@ def read_illustration(path: str | None, max_pixels: int) -> Illustration:
     """An illustration, from its manifest and the files that names, or packed; ready to be drawn.
 
     Its samples have no more grey levels than their layer keeps, its edges lie on the grid that a packed illustration
-    keeps them on and are a valid arrangement: loose or packed, it is the same.
+    keeps them on and are a valid arrangement: loose or packed, it is the same. Raises FormatError and LimitError.
     """
     from penink_cli.formats import archive, illustration
     from penink_cli.geometry import validity
@@ -379,7 +379,7 @@ def settled(illustration: Illustration) -> Illustration:
 
 
 def fetch_manifest(members: dict[str, bytes], source: str) -> bytes:
-    """The manifest among an archive's members."""
+    """The manifest among an archive's members. Raises FormatError where there is none."""
     from penink_cli.formats.illustration import MANIFEST
 
     if MANIFEST not in members:

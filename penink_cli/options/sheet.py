@@ -16,7 +16,7 @@ THIN_PT = 2.0  # a few strokes have no room on less
 
 
 def check_sheet(width_pt: float, height_pt: float, max_pixels: int | None = None) -> None:
-    """Refuse sheets of no size, and those that no memory holds; warn of one that is smaller than a stamp, or a thread.
+    """Raise ParameterError for a sheet of no size, and for one that no memory holds; warn of one that shows little.
 
     max_pixels: --max-pixels, where strokes are to be laid all over the sheet, which takes memory and time by its area.
     """
@@ -32,7 +32,7 @@ def check_sheet(width_pt: float, height_pt: float, max_pixels: int | None = None
 
 
 def check_area(width_pt: float, height_pt: float, max_pixels: int) -> None:
-    """Refuse sheets whose area takes too much memory and time: by --max-pixels, else by `SHEET_PIXELS`."""
+    """Raise LimitError for a sheet whose area takes too much memory and time: by --max-pixels, else `SHEET_PIXELS`."""
     context = click.get_current_context(silent=True)
     if context and context.get_parameter_source("max_pixels") is ParameterSource.DEFAULT:
         max_pixels = SHEET_PIXELS

@@ -27,7 +27,7 @@ STYLE = NameOrFile(shipped)
 
 
 def style_text(name: str) -> bytes:
-    """The file of a shipped style, as it is."""
+    """The file of a shipped style, as it is. Raises ParameterError, which names those that there are."""
     if name not in shipped():
         raise ParameterError(f"no style {printable(name, 60)}; known are {', '.join(shipped())}, or give a file")
     with open(os.path.join(_FOLDER, name + ENDING), "rb") as file:
@@ -35,7 +35,10 @@ def style_text(name: str) -> bytes:
 
 
 def find_style(name: str) -> Style:
-    """The style of that name, or in that file (a name with a dot or a slash in it, or ``-``)."""
+    """The style of that name, or in that file (a name with a dot or a slash in it, or ``-``).
+
+    Raises ParameterError, which names those that there are, and FormatError for a file.
+    """
     from penink_cli.formats import style
 
     if is_file(name):

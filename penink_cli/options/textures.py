@@ -45,7 +45,10 @@ texture_option = click.option(
 
 
 def find_texture(name: str) -> Texture:
-    """The texture of that name, or in that file (a name with a dot or a slash in it, or ``-``)."""
+    """The texture of that name, or in that file (a name with a dot or a slash in it, or ``-``).
+
+    Raises ParameterError, which names those that there are, and FormatError for a file.
+    """
     from penink_cli.formats import texture as texture_format
 
     if is_file(name):

@@ -47,7 +47,7 @@ def taps(where: Floats, widening: float = 1.0) -> Taps:
 
 
 def is_bspline(kernel: str) -> bool:
-    """Whether the kernel of that name is the B-spline alone; an unknown name is an error that lists the known ones."""
+    """Whether the kernel of that name is the B-spline alone. Raises ParameterError, which names the known ones."""
     if kernel not in KERNELS:
         raise ParameterError(f"kernel {kernel!r} is not one of {', '.join(KERNELS)}")
     return kernel == "bspline"

@@ -53,6 +53,8 @@ def reduce(
     Returns:
         (height, width) float32, 0 … 1.
 
+    Raises ParameterError for another fit.
+
     """
     if fit not in FITS:
         raise ParameterError(f"fit {fit!r} is not one of {', '.join(FITS)}")

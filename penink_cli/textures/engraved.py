@@ -15,7 +15,10 @@ def engraved(
     name: str, kind: Engraving, *, angle: float = ANGLE, pen: float = PEN, spacing: float = 0.0, layers: int = LAYERS,
     seed: int = 0, finest: float = 0.0, lines: int = 0, crosses: float = 1.0,
 ) -> Texture:  # fmt: skip
-    """A texture of lines like `kind`'s, with what is given in their stead (see `kinds`)."""
+    """A texture of lines like `kind`'s, with what is given in their stead (see `kinds`).
+
+    Raises ParameterError for a finest line that is no finer than the lines' distance.
+    """
     apart, least = spacing or kind.spacing_pt, finest or kind.finest_pt
     lines_of = replace(
         kind, angle=angle, spacing_pt=apart, finest_pt=least, lines=lines or None, crosses=crosses

@@ -34,13 +34,13 @@ class Verdict:
     say: Callable[[str], None]
 
     def scar(self, line: str) -> None:
-        """Of a file that is not whole while all its pixels are."""
+        """A file is not whole while all its pixels are: a line says so. Raises FormatError where it was chosen."""
         if self.choices.damage == "strict":
             raise FormatError(line)
         self.say(line)
 
     def damage(self, error: FormatError) -> None:
-        """Of pixels that are lost or wrong."""
+        """Pixels are lost or wrong: the error is raised, or a line says it, by what was chosen."""
         if self.choices.damage != "lenient":
             raise error
         self.say(f"{error.message}; what is left of it is read")

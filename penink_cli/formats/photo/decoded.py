@@ -45,7 +45,10 @@ class Decoded:
 
 
 def seen(picture: Decoded, verdict: Verdict, colours: bool) -> GreyImage | ColourImage:
-    """The picture as it should be seen; in its colours where they are wanted and there are any."""
+    """The picture as it should be seen; in its colours where they are wanted and there are any.
+
+    Raises FormatError where its opacity is asked for and it has none.
+    """
     choices = verdict.choices
     transparent = picture.channels in (2, 4)
     if choices.background == ALPHA and not transparent:

@@ -31,7 +31,10 @@ PART = 16  # at least one in so many of a picture's bytes must be there for what
 
 @contextlib.contextmanager
 def errors(kind: str) -> Iterator[None]:
-    """Turn what Pillow raises, which may be nearly anything on damaged files, into errors of ours."""
+    """Turn what Pillow raises, which may be nearly anything on damaged files, into errors of ours.
+
+    Raises FormatError, and LimitError where memory ends.
+    """
     from PIL import Image, UnidentifiedImageError
 
     name = SHOWN.get(kind, kind)
@@ -159,6 +162,7 @@ def of_image(image: Image.Image, sixteen: int = SIXTEEN, inverted: bool = False)
     """A decoded image as bands of what it stores; inks and palettes become colours.
 
     sixteen: white of one of 16 bits; inverted: that 0 is white there, which Pillow heeds in 8 bits only.
+    Raises FormatError for other kinds than grey and colour of 8 or 16 bits.
     """
     if image.mode in ("I", "F", "LAB", "HSV"):
         raise FormatError(f"photograph of kind {image.mode}; grey or colour of 8 or 16 bits is needed")

@@ -71,7 +71,10 @@ class _Directory:
 
 
 def read(encoded: bytes, max_pixels: int, verdict: Verdict) -> Decoded:
-    """The picture of a TIFF that is meant; a line where it is not the first and only one."""
+    """The picture of a TIFF that is meant; a line where it is not the first and only one.
+
+    Raises FormatError and LimitError.
+    """
     order = "<" if encoded[:1] == b"I" else ">"
     big = encoded[2:4] in (b"+\0", b"\0+")
     directories = _directories(encoded, order, big)

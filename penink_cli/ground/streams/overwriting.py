@@ -34,7 +34,7 @@ def keep_inputs(outputs: Iterable[str | None], inputs: Iterable[str | None]) -> 
 
 
 def keep(status: os.stat_result, source: str) -> None:
-    """Refuse an input that the call is to overwrite."""
+    """Raise StreamError for an input that the call is to overwrite."""
     name = _targets.get((status.st_dev, status.st_ino))
     if name is not None:
         raise StreamError(f"is the same file as the input {printable(source)}, which it would overwrite", name)
