@@ -21,8 +21,9 @@ def main() -> None:
     # numpy's linear algebra, of which little is used here, would start a thread a processor, each with its megabytes;
     # under `ulimit -v` it spins for ever where it gets none.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-    # Hardly anything here is made in circles; looking for those at every 700 new objects takes 3 % of a drawing's time.
-    gc.set_threshold(50_000)
+    # Hardly anything here is made in circles, no array is; looking for those at every 700 new objects takes 3 % of a
+    # drawing's time, and once at 50 000 one and a half.
+    gc.set_threshold(500_000)
     from penink_cli.main import main as run
 
     try:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from penink_cli.blasting import curves, rims, sweep, walls
+from penink_cli.blasting import curves, sweep, walls
 from penink_cli.blasting.curve_fitting import over_chords
 from penink_cli.blasting.sheet import SIGMA_PT, Cells, Sheet, Terms
 from penink_cli.ground.model import Floats, HatchLayer, Ints, Strokes
@@ -183,6 +183,8 @@ def along_edges(sheet: Sheet, pen: float, borders: walls.Walls, darkest_from: fl
 
     Lines that meet an edge at an angle leave notches before it, and where a field turns there are gaps.
     """
+    from penink_cli.blasting import rims  # only where lines follow a field
+
     painted = pen + sheet.gain_pt
     parts = []
     for line in rims.along_edges(borders, sheet.tone, 0.55 * painted, darkest_from):

@@ -82,7 +82,7 @@ def engrave(
     if drawn is not None:
         wanted[drawn] = 0.0
     # an engraver's lines go on across steps of tone, and so does what the eye sees of them
-    eye = LowPass(EYE_PT / CELL_PT / 2, halve(sheet.tone), 2.0, sheet.each)
+    eye = LowPass(EYE_PT / CELL_PT / 2, halve(sheet.tone), 2.0, sheet.threads)
     seen = eye(np.ones_like(halve(sheet.tone)))
     rng = np.random.default_rng([seed, 21])
     begin = [rng.random(len(some.step)) for some in sets]

@@ -86,6 +86,8 @@ class Form:
     filler_seen = 0.15
     #: How many times short strokes count their own ink at the least.
     caution = 1.0
+    #: Whether it lays lines, which cross as shares of the tone tell.
+    lays_lines = True
 
     def __init__(self, sheet: Sheet, cos2: Cells, sin2: Cells, layers: tuple[HatchLayer, ...], borders: walls.Walls):
         self.sheet = sheet

@@ -16,19 +16,21 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
 from penink_cli.blasting import candidates, curves, thin, walls
 from penink_cli.blasting.curve_fitting import over_chords
-from penink_cli.blasting.form import Form
 from penink_cli.blasting.shares import ALONE, shares
 from penink_cli.blasting.sheet import Cells, Sheet, Terms
-from penink_cli.blasting.stroke_set import StrokeSet
 from penink_cli.ground import threads as threading
 from penink_cli.ground.device import MEAN
 from penink_cli.ground.model import EdgeList, Floats, HatchLayer, Strokes
+
+if TYPE_CHECKING:
+    from penink_cli.blasting.form import Form
 
 #: Of the lines that are laid. The lenience: noise around a well-placed stroke is not to cut it.
 LAID = Terms(cost=0.25, lenience=0.1)
@@ -129,10 +131,7 @@ def hatch_sheet(
     borders = walls.build(edges, sheet, max(pen_pt or layer.pen_pt for layer in layers))
     pens = [pen_pt or layer.pen_pt for layer in layers]
     finest = pens if pen_pt else [min(pen, max(FINE * pen, FINE_DOTS * gain_pt)) for pen in pens]
-    form = None if directions is None else Form(sheet, *directions, layers, borders)
-    if examples is not None:
-        assert directions is not None
-        form = StrokeSet(sheet, *directions, examples, pen_pt, borders)
+    form = None if directions is None else _form(sheet, layers, directions, examples, pen_pt, borders)
     hatch = Hatch(layers, pens, finest, gain_pt, borders, form, seed, SWEEPS if examples is None else SET_SWEEPS)
     along = thin.strokes_along(sheet, min(pens), min(pens) + MEAN * gain_pt, pen_pt is not None, told)
     draw_first(sheet, along)
@@ -150,7 +149,7 @@ def hatch_sheet(
 
 def lines(sheet: Sheet, hatch: Hatch, tick: Callable[[], None]) -> Strokes:
     """Lay lines on the sheet, round by round, that give it its tone as near as they can; they are inked."""
-    along_form = hatch.form is not None and not isinstance(hatch.form, StrokeSet)
+    along_form = hatch.form is not None and hatch.form.lays_lines
     wide = sheet.low_pass(sheet.tone)
     drawn_wide = sheet.low_pass(sheet.ink)
     there = np.minimum(drawn_wide / sheet.weight, np.float32(0.99))
@@ -191,6 +190,20 @@ def lines(sheet: Sheet, hatch: Hatch, tick: Callable[[], None]) -> Strokes:
         sheet.clear()
         paint(sheet, drawn)
     return drawn
+
+
+def _form(
+    sheet: Sheet, layers: tuple[HatchLayer, ...], directions: tuple[Cells, Cells], examples: Strokes | None,
+    pen_pt: float | None, borders: walls.Walls,
+) -> Form:  # fmt: skip
+    """What lays strokes along directions: lines, or a set's examples. Straight hatching does not load it."""
+    if examples is None:
+        from penink_cli.blasting.form import Form
+
+        return Form(sheet, *directions, layers, borders)
+    from penink_cli.blasting.stroke_set import StrokeSet
+
+    return StrokeSet(sheet, *directions, examples, pen_pt, borders)
 
 
 def in_fewer_cubics(strokes: Strokes) -> Strokes:

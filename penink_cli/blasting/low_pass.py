@@ -6,12 +6,12 @@ This module alone imports the compiled kernel `due` for it.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable
 
 import numpy as np
 import numpy.typing as npt
 
 from penink_cli.blasting._compiled import due as _due
+from penink_cli.ground import threads as threading
 from penink_cli.ground.model import Floats
 
 Cells = npt.NDArray[np.float32]
@@ -31,12 +31,10 @@ class LowPass:
     cell. Each row of the kernel ends in zeros, up to where loops of a fixed length may run; σ is 2.8 at the most.
 
     guide: (rows, columns); cells that differ by `step` or more in it have no part in each other.
-    each: runs a function of one argument over some of these, on threads or not.
+    threads: how many run it.
     """
 
-    def __init__(
-        self, sigma: float, guide: Cells, step: float, each: Callable[[Callable[[int], None], Iterable[int]], None]
-    ):
+    def __init__(self, sigma: float, guide: Cells, step: float, threads: int):
         radius = math.ceil(2.5 * sigma)
         g = gaussian(sigma, radius)
         peak = float(g[radius]) ** 2
@@ -47,7 +45,7 @@ class LowPass:
         self.step = step
         self._line = g.astype(np.float32)
         self._radius = radius
-        self._each = each
+        self._threads = threads
         self._guide = self._padded(guide)
         self._plain = self._blocks_without_steps(guide)
 
@@ -83,15 +81,12 @@ class LowPass:
         """G * values (rows, columns), nothing beyond the frame."""
         out = np.empty_like(values)
         padded = self._padded(values)
-        edges = [*range(0, len(values), BAND), len(values)]
 
-        def band(i: int) -> None:
-            rows = edges[i + 1] - edges[i]
-            scratch = np.empty((rows + 2 * self._radius + 1, padded.shape[1]), np.float32)
+        def band(top: int, bottom: int) -> None:
+            scratch = np.empty((bottom - top + 2 * self._radius + 1, padded.shape[1]), np.float32)
             _due.gather(
-                padded, self._guide, self.kernel, self._line, self.step, self._plain, scratch, out, edges[i],
-                edges[i + 1],
-            )  # fmt: skip
+                padded, self._guide, self.kernel, self._line, self.step, self._plain, scratch, out, top, bottom
+            )
 
-        self._each(band, range(len(edges) - 1))
+        threading.share(threading.ranges(band, len(values), BAND), self._threads)
         return out

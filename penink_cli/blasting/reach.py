@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from penink_cli.blasting import stroke_set, tile
 from penink_cli.ground.model import Texture
 
 
@@ -13,9 +12,13 @@ def reachable(texture: Texture, gain_pt: float) -> tuple[float, float]:
     is never darker than the closest lines it may draw.
     """
     if texture.oriented:
-        return 0.0, stroke_set.PASSES[-1][1]
+        from penink_cli.blasting.stroke_set import PASSES
+
+        return 0.0, PASSES[-1][1]
     if texture.layers:
         return 0.0, max(layer.high for layer in texture.layers)
+    from penink_cli.blasting import tile
+
     enters = tile.thresholds(texture, gain_pt)
     darkest = tile.reach(texture, gain_pt)
     return (float(enters[1]) if len(enters) > 1 else darkest), darkest

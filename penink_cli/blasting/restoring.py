@@ -7,14 +7,10 @@ added, low-passed, each side of a strong step of tone by itself.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
-from functools import partial
-
 import numpy as np
 
 from penink_cli.blasting.low_pass import LowPass
 from penink_cli.blasting.sheet import CELL_PT, SIGMA_PT, STEP, resample
-from penink_cli.ground import threads as threading
 from penink_cli.ground.model import Floats
 
 #: How often what is wanting is looked for. With one pass photographs are off by .5 % RMS, with two by .15.
@@ -35,11 +31,7 @@ def restored(sharp: Floats, true: Floats, width_pt: float, height_pt: float, thr
     rows, columns = max(1, round(height_pt / CELL_PT)), max(1, round(width_pt / CELL_PT))
     wanted = resample(true, rows, columns).astype(np.float32)
     there = resample(sharp, rows, columns).astype(np.float32)
-
-    def each(work: Callable[[int], None], items: Iterable[int]) -> None:
-        threading.share([partial(work, item) for item in items], threads)
-
-    low_pass = LowPass(SIGMA_PT / CELL_PT, there, STEP, each)
+    low_pass = LowPass(SIGMA_PT / CELL_PT, there, STEP, threads)
     weight = low_pass(np.ones_like(there))
     wanting = np.zeros_like(there)
     free = np.clip(np.minimum(there, 1 - there) / np.float32(ENDS), 0, 1)

@@ -106,12 +106,12 @@ class Sheet:
         self.bits = np.zeros((self.rows, (self.columns + 7) // 8, 8), np.uint64)
         self._kept: npt.NDArray[np.uint64] | None = None
         self.residual: Cells = np.zeros((self.rows, self.columns), np.float32)
-        self.low_pass = LowPass(SIGMA_PT / CELL_PT, self.tone, STEP, self.each)
+        self.low_pass = LowPass(SIGMA_PT / CELL_PT, self.tone, STEP, self.threads)
         #: how much of the kernel about each cell counts
         self.weight = self.low_pass(np.ones_like(self.tone))
         # what the eye sees is kept for cells of twice the size
         self._coarse_tone = halve(self.tone)
-        self._eye = LowPass(EYE_PT / CELL_PT / 2, self._coarse_tone, STEP, self.each)
+        self._eye = LowPass(EYE_PT / CELL_PT / 2, self._coarse_tone, STEP, self.threads)
         self._seen_weight = self._eye(np.ones_like(self._coarse_tone))
 
     def clear(self) -> None:
@@ -163,7 +163,7 @@ class Sheet:
 
         Both low-passed alike: held against the bare tone, the drawing would be the lighter the noisier a photograph is.
         """
-        self.low_pass = LowPass(STRICT_SIGMA_PT / CELL_PT, self.tone, 2.0, self.each)
+        self.low_pass = LowPass(STRICT_SIGMA_PT / CELL_PT, self.tone, 2.0, self.threads)
         self.weight = self.low_pass(np.ones_like(self.tone))
         self.residual = self.low_pass(self.tone - self.ink)
 

@@ -47,6 +47,7 @@ class StrokeSet(Form):
 
     fine_shortest_pt = FINE_SHORTEST_PT
     filler_seen = 0.06
+    lays_lines = False
 
     def __init__(
         self, sheet: Sheet, cos2: Cells, sin2: Cells, examples: Strokes, pen_pt: float | None, borders: walls.Walls

@@ -9,7 +9,6 @@ from penink_cli.chain.filters import Chain
 from penink_cli.chain.hatched import hatch
 from penink_cli.chain.job import Job
 from penink_cli.chain.kept import Kept
-from penink_cli.chain.manifest import illustrate
 from penink_cli.chain.plates import Plate, plates
 from penink_cli.chain.request import Request
 from penink_cli.options.common import reporter
@@ -66,6 +65,8 @@ def _draw(job: Job, file: str | None, shape: tuple[int, ...], output: str | None
     directions = found.directions(job, photo, edges, lines)
     of_each = plates(job, photo, shape, size) if job.inks else [Plate(grey, size)]
     if of_illustrations(job.ending):
+        from penink_cli.chain.manifest import illustrate
+
         illustrate(job, of_each, size, edges, lines, directions, output, page)
         return
     hatch(job, of_each, size, edges, lines, directions, output, page)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from penink_cli.chain.balanced import balanced
 from penink_cli.chain.filters import found
 from penink_cli.chain.job import Job, least_length
 from penink_cli.chain.plates import Plate
@@ -32,6 +31,8 @@ def hatch(
     if job.inks is None:
         hatchings = hatched(greys, "hatching.jsonl")
     else:
+        from penink_cli.chain.balanced import balanced
+
         hatchings = balanced(job, plates, greys, over, white, hatched)
     if not any(job.chain.lines(name) > 1 for name in (*hatchings, *over)):
         warn("a drawing without a stroke: the photo is paper white, or was made so")

@@ -6,10 +6,8 @@ of a drawing with another pen the field is read alike, and telling lines and sol
 
 from __future__ import annotations
 
-import pickle
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from hashlib import blake2b
 from typing import Any, TypeVar
 
 T = TypeVar("T")
@@ -37,6 +35,9 @@ def recalled(name: str, told: tuple[Any, ...], make: Callable[[], T]) -> T:
     """
     if not _made:
         return make()
+    import pickle  # a drawing that follows nothing does without
+    from hashlib import blake2b
+
     known = _made[-1].setdefault(name, {})
     key = blake2b(pickle.dumps(told, protocol=5)).digest()
     if key in known:

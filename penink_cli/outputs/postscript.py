@@ -10,7 +10,6 @@ from collections.abc import Sequence
 
 from penink_cli.formats.strokes import Sink
 from penink_cli.ground.model import Strokes
-from penink_cli.outputs import preview
 from penink_cli.outputs.page import Page, ink_box
 from penink_cli.outputs.postscript_arrays import PROLOG, SWELLING, Order, number, units_of, written
 
@@ -36,6 +35,8 @@ def write(
     """
     head = _write_head(out, layers, page, compress, len(layers) if separations else 1)
     if with_preview:
+        from penink_cli.outputs import preview
+
         for line in preview.comments(layers, page, head, colours):
             out.write(line)
     _write_prolog(out, layers, page, compress)

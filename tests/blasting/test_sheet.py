@@ -1,5 +1,7 @@
 """The sheet: ink is counted exactly once, as a slow oracle counts it, and what is due follows."""
 
+import gc
+import weakref
 from itertools import pairwise
 
 import numpy as np
@@ -79,7 +81,7 @@ def test_the_low_pass_stops_at_steps_as_the_oracle_does(shape, sigma):
     guide[:, shape[1] // 2 :] = 1.0
     guide += rng.random(shape, np.float32) * np.float32(0.3 if shape[0] < 50 else 0.1)
     rows, columns = shape
-    low_pass = LowPass(sigma, guide, 0.25, lambda work, items: [work(i) for i in items])
+    low_pass = LowPass(sigma, guide, 0.25, 1)
     radius = len(low_pass.kernel) // 2
     wanted = np.zeros(shape)
     for y in range(rows):
@@ -155,3 +157,16 @@ def test_strokes_that_swell_ink_what_their_outlines_hold(gain):
     wider = widened(strokes, 72 / gain) if gain else strokes
     page = np.concatenate(list(cover.bands([wider], lay_out([wider]), 300, 255)))
     assert abs(sheet.ink.mean() - (1 - page.mean() / 255)) < 0.001
+
+
+def test_a_sheet_is_gone_when_nobody_holds_it():
+    """Without a search for circles, of which a drawing makes hardly any."""
+    gc.disable()
+    try:
+        sheet = Sheet(np.full((30, 30), 0.5), 30.0, 30.0, 0.1, 2)
+        sheet.owe(sheet.tone)
+        held = weakref.ref(sheet)
+        del sheet
+        assert held() is None
+    finally:
+        gc.enable()

@@ -1,4 +1,4 @@
-"""True tone in a closed loop, each texture in the way that suits it."""
+"""True tone in a closed loop, each texture in the way that suits it; what the others need is not loaded."""
 
 from __future__ import annotations
 
@@ -6,8 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from penink_cli.blasting import hatching, pressure, scaling, stroke_set, tile
-from penink_cli.blasting.rules import engrave
+from penink_cli.blasting import hatching
 from penink_cli.blasting.sheet import Sheet
 from penink_cli.blasting.task import Begun, Task
 from penink_cli.ground.median import median
@@ -30,7 +29,9 @@ def draw(task: Task) -> Strokes:
     if texture.oriented:
         strokes = _set(task, begun)
     elif texture.engraving is not None and task.pen_pt is None:
-        strokes = engrave.engraved(task, begun)
+        from penink_cli.blasting.rules.engrave import engraved
+
+        strokes = engraved(task, begun)
     elif texture.layers:
         strokes = _layers(task, begun)
     elif texture.scales is not None:
@@ -50,6 +51,8 @@ def _layers(task: Task, begun: Begun) -> Strokes:
 
 def _grown(task: Task, begun: Begun) -> Strokes:
     """The tile at its size, as far as it reaches, and a hatching of one size for the rest of the tone."""
+    from penink_cli.blasting import scaling, tile
+
     texture = scaling.at_size(task.texture, task.width_pt, task.natural_pt)
     assert task.texture.scales is not None
     first = Strokes(task.width_pt, task.height_pt)
@@ -69,19 +72,27 @@ def _grown(task: Task, begun: Begun) -> Strokes:
 
 
 def _pressed(task: Task, begun: Begun, strokes: Strokes) -> Strokes:
-    return pressure.swollen(begun.sheet, strokes, task.tone, task.swell) if task.swell else strokes
+    if not task.swell:
+        return strokes
+    from penink_cli.blasting.pressure import swollen
+
+    return swollen(begun.sheet, strokes, task.tone, task.swell)
 
 
 def _set(task: Task, begun: Begun) -> Strokes:
+    from penink_cli.blasting.stroke_set import passes
+
     examples = task.texture.strokes
     strokes = hatching.hatch_sheet(
-        begun.sheet, stroke_set.passes(examples), task.edges, task.gain, task.seed, task.pen_pt, task.tick,
+        begun.sheet, passes(examples), task.edges, task.gain, task.seed, task.pen_pt, task.tick,
         begun.field or begun.one_angle(), begun.told, examples,
     )  # fmt: skip
     return _pressed(task, begun, strokes)
 
 
 def _tile(task: Task, begun: Begun) -> Strokes:
+    from penink_cli.blasting import tile
+
     sheet, texture = begun.sheet, task.texture
     enters = tile.thresholds(texture, task.gain)
     parts = tile.blast_tile(sheet, texture, task.edges, enters, task.seed, False, task.pen_pt, task.tick)
