@@ -128,16 +128,16 @@ def hatch(
     columns = int((u_range.max() + PAD_PT - u0) / COLUMN_PT) + 1
     rows = int((v_range.max() + PAD_PT - v0) / ROW_PT) + 2
     gained = painted_width(layer.angle, 0.0, gain_pt)
-    phase = np.zeros((columns, rows))
-    v = v0 + (np.arange(rows - 1) + 0.5) * ROW_PT
+    phase = np.empty((columns, rows))
+    u, v = u0 + (np.arange(columns) + 0.5) * COLUMN_PT, v0 + (np.arange(rows - 1) + 0.5) * ROW_PT
     wander = wandering(layer, seed)
-    for some in range(0, columns, 64):
-        u = u0 + (np.arange(some, min(some + 64, columns)) + 0.5) * COLUMN_PT
-        density = density_at(sheet, coverage, (c, s), u[:, None], v[None, :] + wander(u[:, None], v[None, :]))
-        density /= pressed(density, finest_pt, pen_pt) + gained
-        if layer.spacing_pt > 0:
-            density = np.minimum(density, 1.0 / layer.spacing_pt)
-        np.cumsum(density * ROW_PT, axis=1, out=phase[some : some + 64, 1:])
+    most = 1.0 / layer.spacing_pt if layer.spacing_pt > 0 else np.inf
+    pen, coverage = _sweep.Pressed(finest_pt, pen_pt, 1.0 / LIGHT, gained, most), np.ascontiguousarray(coverage)
+    for some in (slice(k, k + 64) for k in range(0, columns, 64)):
+        aside = wander(u[some, None], v[None, :]) if layer.wave_pt > 0 else np.empty((0, 0))
+        _sweep.integrate(
+            coverage, sheet.width, sheet.height, PAD_PT, c, s, u[some], v, aside, pen, ROW_PT, phase[some]
+        )
 
     rng = np.random.default_rng([seed, 2])
     key = int(rng.integers(1 << 62))
