@@ -1,9 +1,9 @@
 """Where `draw` spends its processor time, filter by filter.
 
-Run as ``python -m tests.benchmarks.draw [stages] [watch] [against CHECKOUT] [half|two|twelve …]``. A portrait with a
-camera's grain, as a JPEG of half a megapixel, two and twelve, is drawn 6 in wide. Times are of the processor, all
-threads together; Canny's detector of scikit-image (sigma 2) on the same photograph in the same run is the unit beside
-them.
+Run as ``python -m tests.benchmarks.draw [stages] [watch] [against CHECKOUT] [half|two|twelve …] [true|house …]``. A
+portrait with a camera's grain, as a JPEG of half a megapixel, two and twelve, is drawn 6 in wide. Times are of the
+processor, all threads together; Canny's detector of scikit-image (sigma 2) on the same photograph in the same run is
+the unit beside them.
 
 `watch`: seconds from the saving of a style or of somebody's strokes to the drawing's being there again, while
 ``draw --watch`` follows them: on the wall, so on a quiet machine alone; and of the processor.
@@ -97,13 +97,13 @@ def drawn(photo, output, *options, checkout=HERE):
     return json.loads(done.stdout), output.read_bytes()
 
 
-def stages(folder, sizes):
+def stages(folder, sizes, drawings):
     for size in sizes:
         photo = folder / f"{size}.jpg"
         portrait(photo, SIZES[size])
         unit = canny(photo)
         print(f"{SIZES[size][0]} x {SIZES[size][1]} pixels; canny {unit:.2f} s")
-        for style, ending in DRAWINGS:
+        for style, ending in drawings:
             results = []
             for threads in (1, 2):
                 options = ["--style", style, "--width", "6in", f"--threads={threads}"]
@@ -117,12 +117,12 @@ def stages(folder, sizes):
                 sys.exit("the threads change the bytes")
 
 
-def against(folder, sizes, older):
+def against(folder, sizes, drawings, older):
     """This checkout beside an older one, in turn."""
     for size in sizes:
         photo = folder / f"{size}.jpg"
         portrait(photo, SIZES[size])
-        for style, ending in DRAWINGS:
+        for style, ending in drawings:
             options = ["--style", style, "--width", "6in"]
             runs, bytes_of = {older: [], HERE: []}, {}
             for turn in range(TURNS + 1):
@@ -209,10 +209,11 @@ def main():
         older = Path(told[at]).resolve()
     with tempfile.TemporaryDirectory() as name:
         sizes = [size for size in SIZES if size in told] or list(SIZES)
+        drawings = [drawing for drawing in DRAWINGS if drawing[0] in told] or DRAWINGS
         if older is not None:
-            against(Path(name), sizes, older)
+            against(Path(name), sizes, drawings, older)
         if not {"watch", "against"}.intersection(told) or "stages" in told:
-            stages(Path(name), sizes)
+            stages(Path(name), sizes, drawings)
         if "watch" in told or not told:
             watch(Path(name))
 

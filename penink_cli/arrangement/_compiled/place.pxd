@@ -19,6 +19,7 @@ cdef class Place:
     cdef int[MOST_EDGES] segment
     cdef int[MOST_EDGES] line
     cdef void take(self, Place other) noexcept nogil
+    cdef bint looks_like(self, Place other) noexcept nogil
     cdef int vertex(self, double x, double y, int name) noexcept nogil
     cdef void edge(self, int a, int b, int segment, int line) noexcept nogil
     cdef void count(self) noexcept nogil

@@ -55,6 +55,19 @@ cdef class Place:
             self.segment[k] = other.segment[k]
             self.line[k] = other.line[k]
 
+    cdef bint looks_like(self, Place other) noexcept nogil:
+        """Whether the other has the same edges between the same positions."""
+        cdef int k
+        if self.vertices != other.vertices or self.edges != other.edges:
+            return False
+        for k in range(self.vertices):
+            if self.x[k] != other.x[k] or self.y[k] != other.y[k]:
+                return False
+        for k in range(self.edges):
+            if self.a[k] != other.a[k] or self.b[k] != other.b[k]:
+                return False
+        return True
+
     cdef int vertex(self, double x, double y, int name) noexcept nogil:
         """A vertex more, which is not free: its number; -1 where there is no room."""
         cdef int v = self.vertices

@@ -178,7 +178,6 @@ cdef class Settler(View):
         """Try a vertex more in an edge: in its middle, or, where it leads out of view, close to the end in view."""
         cdef int e, a, b
         cdef double length
-        self.left_over = self.render(self.best)
         for e in range(self.best.edges):
             a = self.best.a[e]
             b = self.best.b[e]
@@ -193,12 +192,13 @@ cdef class Settler(View):
     cdef void bow(self, int e, double part) noexcept nogil:
         """Try a vertex more at that part of an edge's way."""
         cdef int v
-        cdef double gain
+        cdef double gain, rest
         cdef int a = self.best.a[e]
         cdef int b = self.best.b[e]
-        cdef double rest = self.left_over / self.pixels + self.floor
         if self.best.edges == MOST_EDGES:
             return
+        self.left_over = self.render(self.best)
+        rest = self.left_over / self.pixels + self.floor
         gain = fmin(self.left_over, _OPTIMISM * self.predicted_gain(self.best, e, part)) / self.pixels
         if self.pixels * logarithm(rest / (rest - gain)) < VERTEX:
             return
@@ -212,7 +212,6 @@ cdef class Settler(View):
             self.other.free[v] = True
             self.other.split(e, v)
             self.consider(_GLANCE, v)
-            self.render(self.best)
 
     cdef void drop(self) noexcept nogil:
         """Try a vertex of two edges less, where both are in view: outside much tells against it."""
@@ -253,7 +252,6 @@ cdef class Settler(View):
                     self.other.edge(u, v, NEW, -1)
                     self.other.count()
                     self.consider(_GLANCE, u)
-                    self.render(self.best)
         self.wanted = wanted
 
     cdef double contrast(self, int u, int v) noexcept nogil:
@@ -265,6 +263,7 @@ cdef class Settler(View):
         cdef double ny = (self.best.x[v] - self.best.x[u]) / length
         cdef int n = 1 + <int>length
         cdef double total = 0.0
+        self.render(self.best)
         for k in range(n):
             for side in range(-1, 2, 2):
                 x = self.best.x[u] + (k + 0.5) / n * (self.best.x[v] - self.best.x[u]) + side * nx - self.left

@@ -8,6 +8,9 @@ cdef class Window(Regions):
     cdef float[:, ::1] photo
     cdef double spread
     cdef int moved
+    cdef Place rendered
+    cdef double left_unexplained
+    cdef bint nothing_rendered
     cdef int[MOST_VERTICES] number
     cdef double[:, ::1] normal_matrix, kept, prior, step, ends
     cdef double[::1] residual, response, right_hand_side, grey, gradient
@@ -17,6 +20,7 @@ cdef class Window(Regions):
     cdef void accumulate(self, int known, int unknown) noexcept nogil
     cdef void solve(self, int unknown) noexcept nogil
     cdef double render(self, Place place) noexcept nogil
+    cdef double render_anew(self, Place place) noexcept nogil
     cdef double grey_at(self, double x, double y) noexcept nogil
     cdef bint splat(self, double x, double y, double* over, int* box) noexcept nogil
     cdef void jacobian(self, Place place, int base) noexcept nogil

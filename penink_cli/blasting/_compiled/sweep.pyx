@@ -78,8 +78,8 @@ def integrate(
 ) -> None:
     """Fill in the phase of columns at u (k,), whose rows are at v (m,), points: (k, m + 1).
 
-    coverage: of the cells of a sheet of width × height; as far as `pad` points from it that of its border goes on. c, s:
-    cosine and sine of the hatch. aside: (k, m) how far each place is pushed across it, or empty.
+    coverage: of the cells of a sheet of width × height; as far as `pad` points from it that of its border goes on.
+    c, s: cosine and sine of the hatch. aside: (k, m) how far each place is pushed across it, or empty.
     """
     cdef Py_ssize_t i, j, row, column
     cdef Py_ssize_t rows = coverage.shape[0], columns = coverage.shape[1]
