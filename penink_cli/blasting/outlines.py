@@ -3,7 +3,7 @@
 Edges are followed as a pen would, straight on at junctions. Runs that are strong and long enough are
 chosen, the most telling first. A run that comes too close to ink already there is left out: double
 edges, small prints and layers that share an outline would clog. What remains is fitted with curves,
-which break at corners only.
+which break at corners only. This module alone imports the compiled kernel.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from penink_cli.blasting import curve_fitting, curves
+from penink_cli.blasting._compiled import outlines as _outlines
 from penink_cli.blasting.constants import CLEAR, PIECE, PRESSURE, PRESSURE_LONG, SHORTEST, TAPER, THIN
 from penink_cli.geometry.trails import trails
 from penink_cli.ground.model import EdgeList, Floats, Ints, OutlineChoice, Strokes
@@ -72,7 +73,7 @@ def outline(
     controls: list[Floats] = []
     pens: list[float] = []
     for run in runs(edges, choice, around):
-        points = _resampled(run.vertices, STEP)
+        points = _outlines.resampled(run.vertices, STEP)
         for part, ring in clear.free(points * scale, run.ring, SHORTEST * choice.pen_pt):
             tolerance = max(TOLERANCE, TOLERANCE_PT / pixel_pt)
             controls.append(_smooth(points[part], ring, tolerance) * scale)
@@ -94,38 +95,50 @@ def runs(edges: EdgeList, choice: OutlineChoice, around: npt.NDArray[np.bool_] |
     chosen = np.arange(len(edges.edges)) if around is None else np.flatnonzero(around)
     ends, strength = edges.edges[chosen], None if edges.strength is None else edges.strength[chosen]
     lengths = np.sqrt(((edges.vertices[ends[:, 0]] - edges.vertices[ends[:, 1]]) ** 2).sum(axis=1))
+    chains = trails(edges.vertices, ends, ONWARD)
+    if not chains:
+        return []
+    along = np.concatenate([chain for _, chain in chains])  # all chains, one after another
+    first = curves.starts(np.array([len(chain) for _, chain in chains]))
+    of = np.repeat(np.arange(len(chains)), np.diff(first))
+    mean = np.ones(len(along)) if strength is None else _smoothed(strength[along], lengths[along], of)
+    strong = mean >= 0.5 * choice.min_strength
     found = []
-    for vertices, chain in trails(edges.vertices, ends, ONWARD):
-        mean = _smoothed(strength[chain], lengths[chain]) if strength is not None else np.ones(len(chain))
-        strong = mean >= 0.5 * choice.min_strength
-        whole = bool(strong.all())
-        for i, j in _stretches(strong):
-            length = float(lengths[chain[i:j]].sum())
-            if length < choice.min_length or mean[i:j].max() < choice.min_strength:
-                continue
-            weight = float((mean[i:j] * lengths[chain[i:j]]).sum())
-            trail = vertices[i : j + 1]
-            ring = whole and vertices[0] == vertices[-1]
-            along = chosen[chain[i:j]].tolist()
-            found.append(Run(edges.vertices[trail], trail, along, ring, weight / length, weight))
+    for i, j in _stretches(strong, first[1:-1]):
+        if mean[i:j].max() < choice.min_strength:
+            continue
+        here = lengths[along[i:j]]
+        length = float(here.sum())
+        if length < choice.min_length:
+            continue
+        weight = float((mean[i:j] * here).sum())
+        vertices, begin = chains[of[i]][0], i - int(first[of[i]])
+        trail = vertices[begin : begin + j - i + 1]
+        ring = j - i == len(vertices) - 1 and vertices[0] == vertices[-1]
+        found.append(Run(edges.vertices[trail], trail, chosen[along[i:j]].tolist(), ring, weight / length, weight))
     return sorted(found, key=lambda run: (-run.weight, *run.vertices[0]))
 
 
-def _smoothed(strength: Floats, lengths: Floats, reach: int = 2) -> Floats:
-    """Strength along a chain, averaged over its neighbours by length."""
+def _smoothed(strength: Floats, lengths: Floats, of: Ints, reach: int = 2) -> Floats:
+    """Strength along chains, averaged over its neighbours by length; of: (n,) which chain each is in."""
     total, weight = np.zeros(len(strength)), np.zeros(len(strength))
     for shift in range(-reach, reach + 1):
         here = slice(max(0, shift), len(strength) + min(0, shift))
         there = slice(max(0, -shift), len(strength) + min(0, -shift))
-        total[here] += strength[there] * lengths[there]
-        weight[here] += lengths[there]
+        counts = np.where(of[here] == of[there], lengths[there], 0.0)
+        total[here] += strength[there] * counts
+        weight[here] += counts
     return total / weight
 
 
-def _stretches(wanted: npt.NDArray[np.bool_]) -> list[tuple[int, int]]:
-    """First and one past the last of each stretch of True."""
-    change = np.flatnonzero(np.diff(np.concatenate([[False], wanted, [False]]).astype(np.int8)))
-    return [(int(i), int(j)) for i, j in zip(change[::2], change[1::2])]
+def _stretches(wanted: npt.NDArray[np.bool_], cuts: Ints | None = None) -> list[tuple[int, int]]:
+    """First and one past the last of each stretch of True; none goes on over a cut."""
+    edge = np.diff(wanted.astype(np.int8), prepend=0, append=0)
+    begins, ends = edge == 1, edge == -1
+    if cuts is not None:
+        over = cuts[wanted[cuts] & wanted[cuts - 1]]
+        begins[over] = ends[over] = True
+    return list(zip(np.flatnonzero(begins).tolist(), np.flatnonzero(ends).tolist()))
 
 
 class Clearance:
@@ -133,28 +146,19 @@ class Clearance:
 
     def __init__(self, width_pt: float, height_pt: float, distance_pt: float):
         self.cell = max(distance_pt / 2, math.sqrt(width_pt * height_pt / 5e7))
-        self._taken = np.zeros((int(height_pt / self.cell) + 6, int(width_pt / self.cell) + 6), bool)
-        y, x = np.mgrid[-2:3, -2:3].reshape(2, -1)
-        near = x * x + y * y <= 5
-        self._disc = np.stack([y[near], x[near]], axis=1)
-
-    def _cells(self, points: Floats) -> Ints:
-        at = np.floor(points[:, ::-1] / self.cell).astype(np.int64) + 3
-        return np.clip(at, 2, np.array(self._taken.shape) - 3)
+        self._taken = np.zeros((int(height_pt / self.cell) + 6, int(width_pt / self.cell) + 6), np.uint8)
 
     def take(self, points: Floats) -> None:
         """There is ink at points (n, 2)."""
-        rows, columns = (self._cells(points)[:, None] + self._disc).reshape(-1, 2).T
-        self._taken[rows, columns] = True
+        _outlines.take(points, self.cell, self._taken)
 
     def free(self, points: Floats, ring: bool, shortest_pt: float) -> list[tuple[slice, bool]]:
         """The parts of a run of points (n, 2) that are clear of ink, each with whether it is the whole ring."""
-        rows, columns = self._cells(points).T
-        open_ = ~self._taken[rows, columns]
-        if open_.all():
+        clear = np.empty(len(points), np.bool_)
+        if _outlines.free(points, self.cell, self._taken, clear.view(np.uint8)):
             return [(slice(0, len(points)), ring)]
         steps = np.concatenate([[0.0], np.cumsum(np.sqrt(((points[1:] - points[:-1]) ** 2).sum(axis=1)))])
-        long_enough = [(i, j) for i, j in _stretches(open_) if j - i > 1 and steps[j - 1] - steps[i] >= shortest_pt]
+        long_enough = [(i, j) for i, j in _stretches(clear) if j - i > 1 and steps[j - 1] - steps[i] >= shortest_pt]
         return [(slice(i, j), False) for i, j in long_enough]
 
 
@@ -167,49 +171,16 @@ def _dots(strokes: Strokes, step: float) -> Floats:
 # ------------------------------------------------------------------- smooth curves
 
 
-def _resampled(vertices: Floats, step: float) -> Floats:
-    """Points along a polyline, its vertices among them, no further apart than step."""
-    lengths = np.sqrt(((vertices[1:] - vertices[:-1]) ** 2).sum(axis=1))
-    counts = np.maximum(1, np.ceil(lengths / step)).astype(np.int64)
-    which = np.repeat(np.arange(len(counts)), counts)
-    part = (np.arange(len(which)) - np.repeat(np.cumsum(counts) - counts, counts)) / counts[which]
-    points = vertices[which] + part[:, None] * (vertices[which + 1] - vertices[which])
-    return np.concatenate([points, vertices[-1:]])
-
-
 def _smooth(points: Floats, ring: bool, tolerance: float) -> Floats:
     """Control points (3k + 1, 2) through points (n, 2), with corners where the chain has them."""
-    corners = _corners(points, ring)
-    if ring and len(corners):
-        points = np.concatenate([points[corners[0] : -1], points[: corners[0] + 1]])
-        corners, ring = (corners - corners[0])[1:], False
-    cuts = [0, *corners.tolist(), len(points) - 1]
+    corners = _outlines.corners(points, ring, max(1, round(ARM / STEP)), CORNER)
+    if ring and corners:
+        begin = corners[0]
+        points = np.concatenate([points[begin:-1], points[: begin + 1]])
+        corners, ring = [corner - begin for corner in corners[1:]], False
+    cuts = [0, *corners, len(points) - 1]
     pieces = [curve_fitting.fit(points[i : j + 1], tolerance, ring) for i, j in pairwise(cuts) if j > i]
     return np.concatenate([pieces[0], *(piece[1:] for piece in pieces[1:])])
-
-
-def _corners(points: Floats, ring: bool) -> Ints:
-    """Points that are corners: the sharpest bend within an arm's length, over an arm to each side."""
-    arm = max(1, round(ARM / STEP))
-    n = len(points)
-    if n < 2 * arm + 1:
-        return np.zeros(0, np.int64)
-    if ring:
-        around = np.concatenate([points[-arm - 1 : -1], points, points[1 : arm + 1]])
-        inside = np.arange(n - 1)
-    else:
-        around, inside = points, np.arange(arm, n - arm)
-    at = inside + arm if ring else inside
-    before, after = around[at] - around[at - arm], around[at + arm] - around[at]
-    size = np.sqrt((before**2).sum(axis=1) * (after**2).sum(axis=1))
-    cosine = (before * after).sum(axis=1) / np.maximum(size, 1e-12)
-    found: list[int] = []
-    for k in np.argsort(cosine, kind="stable").tolist():
-        if cosine[k] >= CORNER:
-            break
-        if all(abs(k - other) > arm for other in found):
-            found.append(k)
-    return np.sort(inside[np.array(found, np.int64)]) if found else np.zeros(0, np.int64)
 
 
 # ------------------------------------------------------------------- the pen's pressure
