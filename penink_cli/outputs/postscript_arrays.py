@@ -146,11 +146,12 @@ def _even(groups: Groups, units: int, at: tuple[int, int]) -> tuple[list[bytes],
     numbers, after = np.empty(place[-1], np.int64), np.empty(place[-1], np.int32)
     ends = np.empty((len(place) - 1, 4), np.int64)
     calls: list[bytes] = []
+    grid = _Grid(strokes, units, "b" in groups.kinds)
     for (kind, k), which in alike.items():
         count = sizes[which]
         rank = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count)
         own = np.repeat(begins[which], count) + rank
-        rows, ends[own] = _rows(kind, k, strokes.points[strokes.first[own][:, None] + np.arange(3 * k + 1)], units)
+        rows, ends[own] = grid.rows(kind, k, own)
         at_rows = place[own][:, None] + np.arange(rows.shape[1])
         numbers[at_rows] = rows
         after[at_rows] = _breaks(rank, rows.shape[1], SEGMENT[kind], 2 + len(calls))
@@ -252,10 +253,8 @@ def _groups(strokes: Strokes, units: int) -> Groups:
     """The strokes, at least one, in their groups."""
     counts = np.diff(strokes.first)
     segments = (counts - 1) // 3
-    inner = np.arange(len(strokes.points)) - np.repeat(strokes.first[:-1], counts)
-    begins = np.flatnonzero((inner % 3 == 0) & (inner < np.repeat(counts, counts) - 1))
     owner = np.repeat(np.arange(len(strokes)), segments)
-    _, kinds = _bends(strokes.points[begins[:, None] + np.arange(4)] * units)
+    _, kinds = _bends(strokes.points[_segments(strokes)[:, None] + np.arange(4)] * units)
     kind = np.zeros(len(strokes), np.int64)
     np.maximum.at(kind, owner, kinds)
     _, pen = np.unique(strokes.widths, return_inverse=True)
@@ -266,22 +265,41 @@ def _groups(strokes: Strokes, units: int) -> Groups:
     return Groups(strokes.taken(by_key), np.append(begin, len(strokes)), names, segments[by_key[begin]].tolist())
 
 
-def _rows(kind: str, k: int, points: Floats, units: int) -> tuple[Ints, Ints]:
-    """What arrays of strokes (s, 3k + 1, 2) hold, a row each, two columns still empty; and x, y of both ends (s, 4)."""
-    exact = points * (units, -units)
-    grid = words.whole(exact)
-    ends = np.hstack([grid[:, 0], grid[:, -1]])
-    rows = np.zeros((len(points), 2 + k * SEGMENT[kind]), np.int64)
-    for j in range(k):
-        start, goal = grid[:, 3 * j], grid[:, 3 * j + 3]
-        numbers = rows[:, 2 + j * SEGMENT[kind] : 2 + (j + 1) * SEGMENT[kind]]
+class _Grid:
+    """Strokes on whole numbers, y up: exact, grid: their points (p, 2); bends: of each segment, as p and q."""
+
+    def __init__(self, strokes: Strokes, units: int, bent: bool):
+        self.first = strokes.first
+        self.exact = strokes.points * (units, -units)
+        self.grid = words.whole(self.exact)
+        self.bends = np.zeros((0, 2), np.int64)
+        if bent:
+            self.bends, _ = _bends(self.exact[_segments(strokes)[:, None] + np.arange(4)])
+
+    def rows(self, kind: str, k: int, own: Ints) -> tuple[Ints, Ints]:
+        """What the arrays of strokes `own` (s,) of k segments hold, a row each, two columns still empty; x, y of both
+        ends (s, 4).
+        """
+        first = self.first[own]
+        knots = self.grid[first[:, None] + 3 * np.arange(k + 1)]
+        rows = np.zeros((len(own), 2 + k * SEGMENT[kind]), np.int64)
+        numbers = rows[:, 2:].reshape(len(own), k, SEGMENT[kind])  # a copy, as the two columns lie between
         if kind == "c":
-            numbers[:] = (grid[:, 3 * j + 1 : 3 * j + 4] - start[:, None]).reshape(-1, 6)
-        else:
-            numbers[:, :2] = goal - start
+            inner = first[:, None, None] + (3 * np.arange(k)[:, None] + np.arange(1, 4))
+            numbers = (self.grid[inner] - knots[:, :-1, None]).reshape(len(own), k, 6)
+        elif k:
+            numbers[:, :, :2] = np.diff(knots, axis=1)
         if kind == "b":
-            numbers[:, 2:], _ = _bends(exact[:, 3 * j : 3 * j + 4])
-    return rows, ends
+            numbers[:, :, 2:] = self.bends[((first - own) // 3)[:, None] + np.arange(k)]
+        rows[:, 2:] = numbers.reshape(len(own), -1)
+        return rows, np.hstack([knots[:, 0], knots[:, -1]])
+
+
+def _segments(strokes: Strokes) -> Ints:
+    """Where each segment of all strokes begins among their points."""
+    counts = np.diff(strokes.first) // 3
+    first = np.repeat(strokes.first[:-1] - 3 * (np.cumsum(counts) - counts), counts)
+    return np.asarray(first + 3 * np.arange(len(first)))
 
 
 def _bends(segments: Floats) -> tuple[Ints, Ints]:
@@ -311,12 +329,10 @@ def _split(strokes: Strokes) -> Strokes:
     counts = np.diff(strokes.first)
     if counts.max(initial=0) <= 3 * CHAIN + 1:
         return strokes
-    points, first, widths = [], [0], []
-    for i, width in enumerate(strokes.widths.tolist()):
-        control = strokes[i]
-        for start in range(0, max(1, len(control) - 1), 3 * CHAIN):
-            piece = control[start : start + 3 * CHAIN + 1]
-            points.append(piece)
-            first.append(first[-1] + len(piece))
-            widths.append(width)
-    return replace(strokes, points=np.concatenate(points), first=np.array(first, np.int64), widths=np.array(widths))
+    pieces = np.maximum(1, -(-(counts - 1) // (3 * CHAIN)))
+    which = np.repeat(np.arange(len(counts)), pieces)
+    begin = strokes.first[which] + 3 * CHAIN * (np.arange(len(which)) - np.repeat(np.cumsum(pieces) - pieces, pieces))
+    size = np.minimum(strokes.first[which + 1] - begin, 3 * CHAIN + 1)
+    first = np.concatenate([[0], np.cumsum(size)])
+    at = np.repeat(begin - first[:-1], size) + np.arange(first[-1])
+    return replace(strokes, points=strokes.points[at], first=first, widths=strokes.widths[which])
