@@ -12,7 +12,6 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 
 import click
-import numpy as np
 
 from penink_cli.chain.kept import Kept
 from penink_cli.ground import streams
@@ -103,6 +102,8 @@ class Chain:
 
     def joined(self, names: list[str], output: str | None) -> None:
         """The strokes of several files as one list; `draw` alone writes that."""
+        import numpy as np
+
         from penink_cli.formats import strokes
         from penink_cli.ground.model import Strokes
         from penink_cli.options.layers import read_layers
