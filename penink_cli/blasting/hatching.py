@@ -95,7 +95,7 @@ class Hatch:
 
     def laid(self, sheet: Sheet, covers: list[Floats]) -> list[candidates.Candidates]:
         """The strokes of all layers that cover each cell (rows, columns) as asked."""
-        if isinstance(self.form, StrokeSet):  # its passes know nothing of threads, so they run at the same time
+        if self.form is not None and not self.form.lays_lines:  # a set's passes know of no threads: they run at once
             passes = [partial(self.swept, sheet, i, cover) for i, cover in enumerate(covers)]
             return list(threading.in_order(iter(passes), sheet.threads, ahead=len(passes)))
         return [self.swept(sheet, i, covers.pop(0)) for i in range(len(self.layers))]
