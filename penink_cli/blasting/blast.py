@@ -35,6 +35,7 @@ def blast(
     swell: float = 0.0,
     natural_pt: float | None = None,
     true: Floats | None = None,
+    solid: float | None = None,
     threads: int | None = None,
     tick: Callable[[], None] = lambda: None,
 ) -> Strokes:
@@ -52,6 +53,8 @@ def blast(
     swell: how much strokes of a hatching or a set swell along their way where the tone does, see `pressure`.
     natural_pt: width of the picture at which a texture that grows with it has its own size; None for what that says.
     true: (any size) an image of the same frame whose tone the drawing is to have, where `tone` is sharper but astray.
+    solid: the tone from which on all is filled where the texture reaches black; None for one from which black on white
+        looks black.
     tick: called now and then, `TICKS` times at the most.
 
     The width and density of strokes do not depend on the size of the sheet. Equal input gives equal strokes,
@@ -75,7 +78,7 @@ def blast(
         )  # fmt: skip
     task = Task(
         tone, width_pt, height_pt, edges, texture, seed, pen_pt, device_dpi, outlines, directions, told, swell,
-        natural_pt, threads or 1, tick,
+        natural_pt, solid, threads or 1, tick,
     )  # fmt: skip
     strokes: Strokes = chosen.draw(task)
     tick()

@@ -47,6 +47,7 @@ class Task:
     told: npt.NDArray[np.bool_] | None
     swell: float
     natural_pt: float | None
+    solid: float | None
     threads: int
     tick: Callable[[], None]
 
@@ -91,8 +92,8 @@ class Begun:
         size, gain = (task.width_pt, task.height_pt), MEAN * task.gain
         dark = layers[-1] if layers and task.texture.engraving is None and layers[-1].spacing_pt == 0 else None
         light = None if self.light.none else self.light
-        whole = dark is not None and dark.high >= 1.0
-        black, broad = (solids.BLACK, reserved.FROM) if whole else (solids.DARKEST, 1.0)
+        whole = dark is not None and dark.high >= 1.0 and task.solid is None
+        black, broad = (solids.BLACK, reserved.FROM) if whole else (task.solid or solids.DARKEST, 1.0)
         told = task.tone, *size, sheet.ink, black, light, dark is not None and dark.high >= ALMOST, broad
         value = recalled("black", told, lambda: solids.found(*told))
         gaps = None

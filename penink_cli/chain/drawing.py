@@ -59,11 +59,16 @@ def _draw(job: Job, file: str | None, shape: tuple[int, ...], output: str | None
     """The filters in their order. shape: rows and columns of the photo."""
     finer_pens.refine(job)
     photo = [*shlex.split(photo_words()), "-" if file is None else file]
-    grey, size = found.grey(job, photo, shape)
-    edges = found.edges(job, grey, size)
+    composed, size = found.composed(job, photo, shape)
+    edges = found.edges(job, composed, size)
     lines = found.lines(job, photo)
     directions = found.directions(job, photo, edges, lines)
-    of_each = plates(job, photo, shape, size) if job.inks else [Plate(grey, size)]
+    if job.inks is None:
+        of_each = [Plate(composed, size)]
+    elif job.composes:
+        of_each = plates(job, [composed], size)
+    else:
+        of_each = plates(job, photo, (shape[1], shape[0]))
     if of_illustrations(job.ending):
         from penink_cli.chain.manifest import illustrate
 

@@ -12,18 +12,19 @@ WORTH, RICH_WORTH = 160.0, 40.0
 FIELD_SIDE = 48  # samples of directions along the longer side of an archive
 
 
-def grey(job: Job, photo: list[str], shape: tuple[int, ...]) -> tuple[str, tuple[int, int]]:
-    """The grey of the drawing, and its width and height in pixels. photo: words; shape: its rows and columns."""
+def composed(job: Job, photo: list[str], shape: tuple[int, ...]) -> tuple[str, tuple[int, int]]:
+    """The grey of the drawing, or its colours where plates are made of them, and its width and height in pixels.
+
+    photo: words; shape: its rows and columns.
+    """
     from penink_cli.composition.compose import working_size
 
-    name = job.run("compose", [*_composing(job), *photo], "grey.pgm")
+    if job.inks and job.composes:
+        name = job.run("compose", ["--color", *_composing(job), *photo], "colours.ppm")
+    else:
+        name = job.run("compose", [*_composing(job), *photo], "grey.pgm")
     dpi = POSTER_DPI if of_illustrations(job.ending) else COMPOSED_DPI
     return name, working_size(shape, job.width, dpi / 72)
-
-
-def colours(job: Job, photo: list[str]) -> str:
-    """The colours of the drawing, of which plates are made."""
-    return job.run("compose", ["--color", *_composing(job), *photo], "colours.ppm")
 
 
 def _composing(job: Job) -> list[str]:
@@ -33,7 +34,7 @@ def _composing(job: Job) -> list[str]:
 
 
 def edges(job: Job, grey: str, size: tuple[int, int]) -> str:
-    """The edges of the grey; for an archive those that are worth their bytes, and those that will be outlined."""
+    """The edges of what is composed; for an archive those that are worth their bytes, and those that will be outlined."""
     told = job.words("edges", "detect-edges")
     if not of_illustrations(job.ending) and not job.enlarged(size):
         told += ["--seen-at", repr(job.width)]  # the sizes of an illustration are not known, and all edges enlarge

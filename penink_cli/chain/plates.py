@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from penink_cli.chain import found
 from penink_cli.chain.job import Job
 from penink_cli.ground.codes import code_of
 from penink_cli.options.inks import CMYK
@@ -35,7 +34,10 @@ class Plate:
         """What `blast` is told of it."""
         if not self.number:
             return []
-        return ["--turn", repr(self.turn), "--seed", str(self.seed), "--color", self.colour, "--layer", self.name]
+        from penink_cli.composition.separation import SOLID
+
+        told = ["--turn", repr(self.turn), "--seed", str(self.seed), "--solid", repr(SOLID)]
+        return [*told, "--color", self.colour, "--layer", self.name]
 
     def members(self) -> dict[str, Any]:
         """The same, as a manifest has it."""
@@ -44,10 +46,10 @@ class Plate:
         return {"name": self.name, "color": self.colour, "turn": self.turn, "seed": self.seed}
 
 
-def plates(job: Job, photo: list[str], shape: tuple[int, ...], size: tuple[int, int]) -> list[Plate]:
+def plates(job: Job, photo: list[str], size: tuple[int, int]) -> list[Plate]:
     """The plate of each of the job's inks, the lightest first.
 
-    photo: words; shape: its rows and columns. size: width and height of what is composed.
+    photo: words that name what has their colours; size: its width and height, pixels.
     """
     from penink_cli.composition.separation import lightest_first, turns
 
@@ -61,10 +63,6 @@ def plates(job: Job, photo: list[str], shape: tuple[int, ...], size: tuple[int, 
     seed = int(job.stages["blast"].get("seed", 0))
     told = ["--inks", "cmyk" if job.inks is CMYK else ",".join(job.inks.names)]
     told += ["--black", repr(job.given["black"])] if "black" in job.given else []
-    if job.composes:
-        photo = [found.colours(job, photo)]
-    else:
-        size = shape[1], shape[0]
     made = job.chain.run_plates("separate", [*told, *photo], "plate-{}.pgm", n)
     result = []
     for place, number in enumerate(order):

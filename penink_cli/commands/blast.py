@@ -113,6 +113,12 @@ if TYPE_CHECKING:
     metavar="DEGREES",
     help="Turn the hatching clockwise, from a field of directions too: that of several inks is to cross.",
 )
+@click.option(
+    "--solid",
+    type=Finite(0.5, 1),
+    metavar="TONE",
+    help="Fill what is at least so dark, where the texture reaches black: .985 for a plate.  [default: .93 or .97]",
+)
 @click.option("--color", "--colour", "colour", type=COLOUR, metavar="COLOUR", help="The ink, as the result is to say.")
 @click.option("--layer", "layer_name", metavar="NAME", help="The layer's name, as the result is to say.")
 @threads_option
@@ -139,6 +145,7 @@ def blast(
     lines_file: str | None,
     ink_files: tuple[str, ...],
     turn: float,
+    solid: float | None,
     colour: tuple[float, float, float] | None,
     layer_name: str | None,
     threads: int | None,
@@ -197,6 +204,7 @@ def blast(
             pen_pt=pen,
             natural_pt=natural,
             true=true,
+            solid=solid,
             device_dpi=device_dpi,
             rule=rule,
             outlines=Strokes.joined(ink) if ink else None,

@@ -32,6 +32,8 @@ _DARKEST, _NEUTRAL = 35.0, 15.0  # lightness and chroma up to which an ink is bl
 LEAST = 0.004  # the least that an ink lets through: none is perfect, and logarithms of it exist
 #: Prices, as squared distances in Lab: of one ink all over, of all black too much or too little.
 _INK, _BLACK = 0.05, 4.0
+#: The amount from which on an ink is laid solid. Less of it is a tint: other inks, and the paper, show through.
+SOLID = 0.985
 _TRIES = 30
 _STARTS = (0.1, 0.5, 0.95)
 

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from penink_cli.blasting.pens import finer_texture
+from penink_cli.composition.separation import SOLID
 from penink_cli.ground import pens
 from penink_cli.ground.model import Floats, GreyImage, Illustration, Layer, Strokes
 from penink_cli.illustration.drawing import Advance, enlarged, grey_size, lined, outlined, tone_curve
@@ -179,7 +180,8 @@ def _hatched(
                 wanted, width_pt, height_pt, layer.edges, layer.texture, seed=seed + layer.seed + i,
                 pen_pt=layer.pen_pt, device_dpi=device_dpi, rule=layer.rule, outlines=ink if len(ink) else None,
                 directions=layer.directions and layer.directions.turned(layer.turn), lines=layer.lines,
-                natural_pt=illustration.width, swell=layer.swell, threads=threads,
+                natural_pt=illustration.width, swell=layer.swell, solid=None if layer.color is None else SOLID,
+                threads=threads,
             )  # fmt: skip
         hatched = hatched.rounded()
         ink = Strokes.joined([ink, hatched])

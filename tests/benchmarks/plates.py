@@ -117,7 +117,8 @@ def plates(amounts: Sequence[np.ndarray], inks: tuple, edges, texture_name: str,
         width_pt, height_pt = width_in * 72, width_in * 72 * rows / columns
         tone = at_size(grey.tone, round(width_pt * 2), round(height_pt * 2))
         own = turned(texture, turn[place])
-        strokes = blast(tone, width_pt, height_pt, edges, own, seed=place, device_dpi=None, threads=2)
+        strokes = blast(tone, width_pt, height_pt, edges, own, seed=place, solid=separation.SOLID, threads=2,
+                        device_dpi=None)  # fmt: skip
         drawn.append(Plate(strokes, inks[number], grey.tone))
     return drawn
 

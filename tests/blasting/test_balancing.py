@@ -13,6 +13,8 @@ from penink_cli.blasting import balancing
 from penink_cli.blasting.balancing import Plate, balanced, corrected
 from penink_cli.blasting.blast import blast
 from penink_cli.blasting.frame_ends import drawn_on
+from penink_cli.blasting.sheet import coverage
+from penink_cli.composition.separation import SOLID
 from penink_cli.formats import pgm, strokes
 from penink_cli.ground.colour import encoded, linear
 from penink_cli.ground.model import GreyImage, Strokes, turned
@@ -31,11 +33,12 @@ def tones() -> list[np.ndarray]:
     return [0.15 + 0.6 * x, 0.7 - 0.5 * y, disc]
 
 
-def drawn(wanted: list[np.ndarray]) -> list[Plate]:
+def drawn(wanted: list[np.ndarray], solid: float | None = None) -> list[Plate]:
     plates = []
     for i, (tone, ink) in enumerate(zip(wanted, INKS, strict=True)):
         texture = turned(find_texture("crosshatch"), 25.0 * i)
-        plates.append(Plate(blast(tone, SIDE, SIDE, None, texture, seed=i, device_dpi=None), ink, tone))
+        strokes = blast(tone, SIDE, SIDE, None, texture, seed=i, solid=solid, device_dpi=None)
+        plates.append(Plate(strokes, ink, tone))
     return plates
 
 
@@ -44,10 +47,10 @@ def plates():
     return drawn(tones())
 
 
-def off(plates: list[Plate]) -> float:
+def off(plates: list[Plate], amounts: list[np.ndarray] | None = None) -> float:
     """Mean ΔE2000 of the print from the tones', both as the eye sees them."""
     printed, wanted = 1.0, 1.0
-    for plate, tone in zip(plates, tones(), strict=True):
+    for plate, tone in zip(plates, tones() if amounts is None else amounts, strict=True):
         bare = np.concatenate(list(cover.bands([plate.strokes], lay_out([plate.strokes]), DPI, 255))) / 255
         printed = printed * (bare[..., None] + (1 - bare[..., None]) * linear(plate.ink))
         wanted = wanted * (1 - tone[..., None] * (1 - linear(plate.ink)))
@@ -69,6 +72,27 @@ def test_pressed_plates_print_truer_colours(plates):
         factor = own.widths / plate.strokes.widths
         assert np.abs(factor - 1).max() <= balancing.PRESSURE + 0.01 / plate.strokes.widths.min()
         assert np.percentile(np.abs(factor - 1), 50) < 0.2
+
+
+def test_a_dark_tint_is_no_solid():
+    """Filled from where black on white looks black, a plate of .975 would be all ink."""
+    tone = np.full((216, 216), 0.975)
+    covered = []
+    for solid in (None, SOLID):
+        strokes = blast(tone, SIDE, SIDE, None, find_texture("crosshatch"), solid=solid, device_dpi=None)
+        covered.append(float(coverage(strokes, 1080, 1080)[100:-100, 100:-100].mean()))
+    assert covered[0] > 0.995
+    assert covered[1] == pytest.approx(0.975, abs=0.01)
+
+
+def test_dark_plates_are_not_pressed_past_the_right_colour():
+    """Where strokes lie over one another, what a first glance promises of pressing them does not come."""
+    wanted = [np.full((216, 216), tone) for tone in (0.95, 0.9, 0.8)]
+    wanted[0][:, 108:] = 0.75
+    dark = drawn(wanted, SOLID)
+    pressed = balanced(dark)
+    after = off([replace(plate, strokes=own) for plate, own in zip(dark, pressed, strict=True)], wanted)
+    assert after < 0.13 * off(dark, wanted)
 
 
 def test_threads_change_nothing(plates):

@@ -185,7 +185,8 @@ def test_plates_are_composed_where_the_call_says_how(tmp_path, penink, options):
     call = ("draw", "--inks", "cmyk", "--width", "1in", *options, "photo.png", "-v", "--as", "png", "-o", "a.png")
     done = penink(*call, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
-    composing = next(line for line in done.stderr.decode().splitlines() if "compose --color" in line)
+    (composing,) = (line for line in done.stderr.decode().splitlines() if "penink compose" in line)
+    assert "--color" in composing
     import shlex
 
     assert penink(*shlex.split(composing)[1:], cwd=tmp_path).returncode == 0
