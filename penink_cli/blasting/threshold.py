@@ -21,7 +21,7 @@ from penink_cli.blasting.constants import BLOCK, LEAST_PIXELS, PIXEL, TAKEN_UP, 
 from penink_cli.blasting.screens import Screen, ThresholdTable, at_size, table
 from penink_cli.blasting.sheet import resample
 from penink_cli.geometry import edge_index
-from penink_cli.ground import pens
+from penink_cli.ground import device, pens
 from penink_cli.ground.angles import direction
 from penink_cli.ground.model import EdgeList, Floats, Ints, Strokes, Texture
 
@@ -65,12 +65,14 @@ class Paper:
         self.area = np.outer(tall, wide)  # square points
 
     def cover(self, ink: Strokes) -> None:
-        """Take the ink of outlines from what is bare."""
+        """Take the ink of outlines from what is bare, as broad as the printer paints them that they are for."""
+        if ink.device_dpi:
+            ink = device.widened(ink, ink.device_dpi)
         lines = curves.sample(ink.points, ink.first, curves.pieces_of(ink.points, ink.first, 1.0))
         begin = np.setdiff1d(np.arange(len(lines.points)), lines.first[1:] - 1)
         a, b = lines.points[begin], lines.points[np.minimum(begin + 1, len(lines.points) - 1)]
         owner = np.searchsorted(lines.first, begin, side="right") - 1
-        covered = np.sqrt(((b - a) ** 2).sum(axis=1)) * (ink.widths[owner] + WIDENED)
+        covered = np.sqrt(((b - a) ** 2).sum(axis=1)) * ink.widths[owner]
         middle = (a + b) / 2
         inside = (middle >= 0).all(axis=1) & (middle < (self.width_pt, self.height_pt)).all(axis=1)
         x, y = (middle[inside] / self.side_pt).astype(np.int64).T

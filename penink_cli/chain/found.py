@@ -34,7 +34,7 @@ def _composing(job: Job) -> list[str]:
 
 
 def edges(job: Job, grey: str, size: tuple[int, int]) -> str:
-    """The edges of what is composed; for an archive those that are worth their bytes, and those that will be outlined."""
+    """The edges of what is composed; for an archive those worth their bytes, and those that will be outlined."""
     told = job.words("edges", "detect-edges")
     if not of_illustrations(job.ending) and not job.enlarged(size):
         told += ["--seen-at", repr(job.width)]  # the sizes of an illustration are not known, and all edges enlarge

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from penink_cli.ground.device import narrowed
 from penink_cli.ground.model import EdgeList, Floats, GreyImage, LineChoice, Lines, OutlineChoice, Strokes
 
 PIXELS_PER_PT = 2.0  # of the grey that is blasted: half the distance between the closest strokes
@@ -65,7 +66,10 @@ def outline_strokes(
     edges: EdgeList, width_pt: float, height_pt: float, choice: OutlineChoice, ink: Strokes | None = None,
     device_dpi: float | None = None,
 ) -> Strokes:  # fmt: skip
-    """Outline strokes of the edges chosen, for that printer; ink is on the sheet already, and not to be doubled."""
+    """Outline strokes of the edges chosen, for that printer; ink is on the sheet already, and not to be doubled.
+
+    They are so much finer as the printer paints them broader, unless a technical pen draws them.
+    """
     from penink_cli.blasting import outlines
 
     around = None
@@ -74,4 +78,6 @@ def outline_strokes(
 
         around = regions.edges_around(edges, np.array(choice.regions, np.float64))
     drawn = outlines.outline(edges, width_pt, height_pt, choice, around, ink)
+    if device_dpi and not choice.even:
+        drawn = narrowed(drawn, device_dpi)
     return replace(drawn, device_dpi=device_dpi)

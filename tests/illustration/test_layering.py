@@ -25,7 +25,7 @@ def two_layers(side: int = 48) -> tuple[Illustration, np.ndarray]:
     )
     layers = tuple(
         Layer(GreyImage.from_grey(1 - np.where(part, tone, 0.0), 255), circles, find_texture(texture), outline=outline)
-        for part, texture, outline in ((~within, "stipple", None), (within, "crosshatch", OutlineChoice(0.7)))
+        for part, texture, outline in ((~within, "stipple", None), (within, "crosshatch", OutlineChoice(0.84)))
     )
     return Illustration(144, 144, layers), tone
 

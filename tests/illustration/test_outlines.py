@@ -7,7 +7,9 @@ import pytest
 
 from penink_cli.blasting import curve_fitting, curves, outlines
 from penink_cli.geometry import regions
+from penink_cli.ground.device import widened
 from penink_cli.ground.model import EdgeList, OutlineChoice, Strokes
+from penink_cli.illustration.drawing import outline_strokes
 from tests.illustration.test_quantisation import distance_to
 from tests.oracles import curve_fitting as slow
 
@@ -156,3 +158,14 @@ def test_curves_keep_their_promise(tolerance):
     strokes = Strokes(1, 1, control, np.array([0, len(control)]), np.ones(1))
     line = dots(strokes, 0.02)
     assert np.hypot(*(walk[:, None] - line).transpose(2, 0, 1)).min(axis=1).max() <= tolerance + 0.02
+
+
+def test_outlines_are_as_broad_in_print_as_they_were_meant_to_be():
+    edges = polygon(ring(40, 30), 0.5)
+    choice = OutlineChoice(pen_pt=0.7)
+    meant, drawn = (outline_strokes(edges, 200, 200, choice, device_dpi=dpi) for dpi in (None, 600.0))
+    assert drawn.device_dpi == 600 and meant.device_dpi is None
+    assert widened(drawn, 600).widths == pytest.approx(meant.widths, abs=0.002)
+    assert (drawn.widths < meant.widths - 0.1).all()
+    pens = [outline_strokes(edges, 200, 200, EVEN, device_dpi=dpi).widths.tolist() for dpi in (None, 600.0)]
+    assert pens[0] == pens[1]  # a technical pen is as broad as it is

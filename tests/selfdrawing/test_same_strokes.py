@@ -10,6 +10,7 @@ import pytest
 from scipy.spatial import cKDTree
 
 from penink_cli.blasting.constants import PIXEL, WIDENED
+from penink_cli.ground.device import widened
 from penink_cli.ground.model import Illustration, OutlineChoice
 from penink_cli.illustration.layering import layer_strokes
 from penink_cli.options.textures import find_texture
@@ -103,7 +104,7 @@ def test_pens_are_finer_on_a_small_print(tmp_path):
             text = page.evaluate(f"svg({width}, [0, 0, {width}, {width}], 72 / 600)")
         usual = float(re.search(r'stroke-width="([^"]*)"', text)[1]) * 72 / 25.4
         assert usual == pytest.approx(float(np.median(hatching.widths)), abs=0.02)
-        assert outline.widths.max() == pytest.approx(0.8 * part, rel=0.2)
+        assert widened(outline, 600).widths.max() == pytest.approx(0.8 * part, rel=0.2)
     with Page(path, 300, 300) as page:
         coarse = page.evaluate("svg(72, [0, 0, 72, 72], 72 / 600, 1)")
     assert float(re.search(r'stroke-width="([^"]*)"', coarse)[1]) * 72 / 25.4 > 0.35

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
+from penink_cli.blasting.constants import WIDENED
 from penink_cli.ground.model import GreyImage, Illustration, Layer, LineChoice, Lines
 from penink_cli.lines.choice import chosen
 from penink_cli.lines.strokes import line_strokes
@@ -17,6 +18,7 @@ from penink_cli.options.textures import find_texture
 from penink_cli.selfdrawing import data, postscript, telling
 from tests.selfdrawing.drawn import by_printer, page_svg
 from tests.selfdrawing.pictures import ghostscript
+from tests.selfdrawing.test_outlines import on_a_printer
 from tests.selfdrawing.test_same_strokes import CATCH
 
 
@@ -96,6 +98,23 @@ def test_all_three_draw_the_same_lines(width, tmp_path):
     for found, near in ((printed, 0.5), (along(shapes), 1.6)):
         assert (cKDTree(found).query(wanted)[0] <= near).mean() > 0.98
         assert (cKDTree(wanted).query(found)[0] <= near + 0.4).mean() > 0.96
+
+
+@pytest.mark.parametrize(("even", "more"), [(False, 0.0), (True, WIDENED)])
+def test_they_are_painted_as_broad_as_they_are_meant(even, more):
+    """A printer adds nothing that is not allowed for, but to a technical pen, which is as broad as it is."""
+    choice = LineChoice(pen_pt=1.1, even=even)
+    printed = on_a_printer(drawing(some_lines(), line=choice), 288.0)
+    ours = line_strokes(some_lines(), 288, 216, choice)
+    long = np.array([np.hypot(*np.diff(at, axis=0).T).sum() for _, at in printed])
+    mean = float((np.array([pen for pen, _ in printed]) * long).sum() / long.sum())
+    area, way = 0.0, 0.0
+    for i in range(len(ours)):
+        knots = ours[i][::3]
+        legs = np.hypot(*np.diff(knots, axis=0).T)
+        widths = ours.at_knots[ours.knots[i] : ours.knots[i + 1]]
+        area, way = area + float((legs * (widths[1:] + widths[:-1]) / 2).sum()), way + float(legs.sum())
+    assert mean == pytest.approx(area / way + more, abs=0.03)
 
 
 def test_they_weigh_in_the_tone_and_light_ones_take_from_it(tmp_path):

@@ -3,7 +3,7 @@
 
 // Outlines of a layer in the part of the picture that matters, in its units: [xs, ys, pen]. Their ink is on the blocks then.
 function outlinesOf({picture, outlines, outlinePen, magnification: unit}, blocks) {
-  const {side, bare} = blocks, width = blocks.width / unit, height = blocks.height / unit, found = [], widened = WIDENED / unit, ink = new Float64Array(bare.length);
+  const {side, bare} = blocks, width = blocks.width / unit, height = blocks.height / unit, found = [], ink = new Float64Array(bare.length);
   const x0 = blocks.x0 / unit, y0 = blocks.y0 / unit, x1 = blocks.x1 / unit, y1 = blocks.y1 / unit;
   // which cells, of half the distance to keep, are near ink
   const cell = Math.max(CLEAR / 2 * outlinePen, Math.max(x1 - x0, y1 - y0) / 2000), columns = Math.ceil((x1 - x0) / cell) + 6;
@@ -24,7 +24,7 @@ function outlinesOf({picture, outlines, outlinePen, magnification: unit}, blocks
       // pieces that the pen's pressure leaves of equal width are one stroke
       let start = from, wide = 0, state = SEED + SEED_STEP * number, knot = -1, before, index = -1;
       const random = () => (state = (state * CHAIN_FACTOR + CHAIN_STEP) % 65536, (state >> 8) / 128 - 1);
-      const put = upto => found.push([px.slice(start, upto + 1), py.slice(start, upto + 1), wide + widened]);
+      const put = upto => found.push([px.slice(start, upto + 1), py.slice(start, upto + 1), wide]);
       let after = random();
       for (let k = from + 1; k <= to; k++) {
         if (index !== Math.floor(along[k] / PIECE)) {
@@ -33,7 +33,7 @@ function outlinesOf({picture, outlines, outlinePen, magnification: unit}, blocks
           while (knot < Math.floor(at)) { before = after; after = random(); knot++; }
           const t = ring ? 1 : clamp(Math.min(middle - along[from], along[to] - middle) / Math.min(TAPER, long / 2), 0, 1);
           const swell = (THIN + (1 - THIN) * t * (2 - t)) * (1 + PRESSURE * (before + (after - before) * smooth(at - knot)));
-          const now = pressure ? pen * Math.max(0.3, Math.floor(20 * swell + 0.5) / 20) : pen;
+          const now = pressure ? pen * Math.max(0.3, Math.floor(20 * swell + 0.5) / 20) : pen + WIDENED / unit;
           if (now !== wide) {
             if (wide) put(k - 1);
             start = k - 1;
@@ -42,7 +42,7 @@ function outlinesOf({picture, outlines, outlinePen, magnification: unit}, blocks
         }
         const x = (px[k] + px[k - 1]) / 2, y = (py[k] + py[k - 1]) / 2;
         if (inside(x, y)) ink[(Math.floor(y * unit / side) - blocks.top) * blocks.across + Math.floor(x * unit / side) - blocks.left] +=
-          (wide + widened) * (along[k] - along[k - 1]);
+          wide * (along[k] - along[k - 1]);
       }
       put(to);
     }

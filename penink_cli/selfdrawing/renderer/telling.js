@@ -11,7 +11,8 @@ function tellingOf(layer, width, height, white) {
       // finer pens have room for the lines of a picture that is as much larger
       const room = width * 1.001 / (layer.lineEven && !kind ? 1 : layer.fine), step = LADDER.filter(wide => wide <= room).length - 1;
       const drawn = layer.told.filter(line => line.white === kind && line.enters <= step);
-      return drawn.map(line => kind ? pressed(line, sx, sy, WHITE_PEN, false) : pressed(line, sx, sy, layer.linePen, layer.lineEven));
+      const pen = layer.linePen + (layer.lineEven ? WIDENED : 0);    // what a printer adds to a technical pen counts
+      return drawn.map(line => kind ? pressed(line, sx, sy, WHITE_PEN, false) : pressed(line, sx, sy, pen, layer.lineEven));
     };
     layer.toldAt = {width, height, pen: layer.linePen, dark: strokes(false), white: strokes(true)};
   }
@@ -100,12 +101,12 @@ function round(x, y, radius, from, upto) {
 
 // The dark lines that are seen in the window, as wide as to be asked of the device. Their ink is on the blocks then.
 function tellingOn(layer, blocks, gain) {
-  const ink = new Float64Array(blocks.bare.length), out = [], more = WIDENED - MEAN * gain;
+  const ink = new Float64Array(blocks.bare.length), out = [], more = -MEAN * gain;
   for (const {xs, ys, widths} of tellingOf(layer, blocks.width, blocks.height, false)) {
     if (!xs.some((x, i) => x > blocks.x0 - 3 && x < blocks.x1 + 3 && ys[i] > blocks.y0 - 3 && ys[i] < blocks.y1 + 3)) continue;
     out.push({xs, ys, widths: widths.map(w => Math.max(0.05, w + more))});
     for (let i = 0; i < xs.length; i++) {
-      const x = xs[i], y = ys[i], j = Math.min(i + 1, xs.length - 1), wide = widths[i] + WIDENED, area = i < j ? wide * far(xs[j] - x, ys[j] - y) : xs.length === 1 ? Math.PI / 4 * wide * wide : 0;
+      const x = xs[i], y = ys[i], j = Math.min(i + 1, xs.length - 1), wide = widths[i], area = i < j ? wide * far(xs[j] - x, ys[j] - y) : xs.length === 1 ? Math.PI / 4 * wide * wide : 0;
       const a = Math.floor(x / blocks.side) - blocks.left, b = Math.floor(y / blocks.side) - blocks.top;
       if (x >= 0 && y >= 0 && x < blocks.width && y < blocks.height && a >= 0 && b >= 0 && a < blocks.across && b < blocks.down) ink[b * blocks.across + a] += area;
     }
