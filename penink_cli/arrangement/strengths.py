@@ -52,15 +52,11 @@ def strengths(grey: npt.NDArray[np.floating], edges: EdgeList, lens: float, nois
     height, width = grey.shape
     blur = min(float(exact.hypot(lens, np.sqrt(_OWN))), (_steps.MAX_REACH - _BEYOND[-1]) / _CLEAN)
     ends = np.column_stack(walls.segments(edges, width, height))
-    columns, rows = math.ceil(width / _CELL_PX) + 2, math.ceil(height / _CELL_PX) + 2
     photo = _steps.Photo(
         np.ascontiguousarray(grey, np.float32),
         walls.distances(edges, width, height, _MIXED * blur),
         walls.walls(edges, width, height),
-        ends,
-        _CELL_PX,
-        columns,
-        *edge_index.lists(*edge_index.cells(ends, _CELL_PX), columns, rows),
+        edge_index.grid(ends, _CELL_PX, width, height),
         _mixed(blur),
         _PARTS,
         _CLEAN * blur,

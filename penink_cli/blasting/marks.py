@@ -18,9 +18,9 @@ from penink_cli.ground.model import Floats, Ints, Strokes
 
 Mask = npt.NDArray[np.bool_]
 
-#: A thing is where the tone exceeds LEVEL. It reaches CORE somewhere and on the mean of what is deeper than
-#: NEAR_PT, nothing from NEAR_PT to FAR_PT around it is
-#: darker than PAPER, and no place in it is further than HALF_PT from its border.
+#: A thing is where the tone exceeds LEVEL. Somewhere in it the tone reaches CORE, as does the mean of what is deeper
+#: in it than NEAR_PT. From NEAR_PT to FAR_PT around it nothing is darker than PAPER. No place in it is further than
+#: HALF_PT from its border.
 LEVEL, CORE, PAPER, NEAR_PT, FAR_PT, HALF_PT = 0.5, 0.75, 0.12, 1.0, 2.5, 7.0
 #: The distance of the rows of strokes, in painted widths.
 PITCH = 0.8

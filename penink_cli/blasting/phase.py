@@ -1,11 +1,11 @@
 """A phase over the sheet whose level lines are pen lines: along a field of directions, as dense as is asked.
 
-Where lines are to run along a field, their phase grows by their density (lines a point) along the field's normal. Such
-a phase exists exactly for few fields only, and a line has no front, so that the normal may point either way from place
-to place. So the phase is kept modulo a turn and but for its sign, as a unit complex number at each node of a grid, and
-made to agree with its neighbours as well as all can (after Knöppel, Crane, Pinkall and Schröder, Stripe patterns on
-surfaces, 2015, who solve an eigenproblem for it; this is nested iteration). Where lines must begin or end to keep
-their density, what is left are singularities, few and far apart.
+Where lines are to run along a field, their phase grows by their density (lines a point) along the field's normal. For
+most fields no phase does so everywhere. Nor has a line a front: the normal may point either way from place to place. So
+each node of a grid keeps its phase modulo a turn, and but for its sign, as a unit complex number. Each is made to agree
+with its neighbours as well as all can, by nested iteration (after Knöppel, Crane, Pinkall and Schröder, Stripe
+patterns on surfaces, 2015, who solve an eigenproblem instead). Where lines must begin or end to keep their density,
+singularities are left, few and far apart.
 
 Every level is settled in bands of rows, each with as many rows more on both sides as any node can be felt through
 in its sweeps: the result depends on neither bands nor threads, and memory grows little with the sheet.

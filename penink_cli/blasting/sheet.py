@@ -4,11 +4,10 @@ The sheet is divided into square cells of about 0.96 pt, 8 × 8 subpixels each (
 600 dpi), one bit a subpixel. Ink already there is never counted twice, so the tone of
 crossing strokes is exact, and the cost is the same whatever the picture's resolution.
 
-What is due is kept low-passed: ``residual = G * (tone - ink)``, G a Gaussian of σ 2.5 pt
-cut off where the tone steps strongly, so that ink on one side of an edge never pays for
-tone on the other. Adding ink a at p changes the squared error (t - c)ᵀ G (t - c) by
--a (2 residual(p) - own), own being what the stroke itself adds at p, so a trial costs one
-look-up a sample.
+What is due is kept low-passed: ``residual = G * (tone - ink)``. G is a Gaussian of σ 2.5 pt,
+cut off where the tone steps strongly: ink on one side of an edge never pays for tone on the
+other. Ink a, added at p, changes the squared error (t - c)ᵀ G (t - c) by -a (2 residual(p) - own);
+own is what the stroke itself adds at p. So a trial costs one look-up a sample.
 
 A device paints every pixel that a stroke touches. It thereby widens a stroke of direction
 θ by (|cos θ| + |sin θ|) of its pixels; `gain_pt` is the size of that pixel, 0 for none.

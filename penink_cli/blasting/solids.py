@@ -36,10 +36,10 @@ SMOOTH_PT, LIGHT, FALLS_PT = 0.5, 0.6, 1.4
 WIDE_PT, NOISE = 3.0, 0.04
 #: The least area that is filled, square points; hatching draws the rest.
 LEAST_PT2 = 3.0
-#: Where the tone around is at least AROUND, black of less than BLOT_PT2 is a blot in the hatching, and hatching of less
-#: than FLECK_PT2 a fleck in the black, as is less than BEAD_PT2 of anything that is rather dark than light. Nor is a
-#: dark thing filled here and there: of what is at most NEARLY less dark and hangs together at least SHARE is black, or
-#: all of it is hatched.
+#: Where the tone around is at least AROUND, black smaller than BLOT_PT2 would be a blot in the hatching: it is hatched.
+#: Hatching smaller than FLECK_PT2 would be a fleck in the black, and anything rather dark than light smaller than
+#: BEAD_PT2 a bead: both are filled. Nor is a dark thing filled here and there. A part that hangs together, at most
+#: NEARLY less dark than black, is hatched whole unless SHARE of it is black.
 AROUND, BLOT_PT2, FLECK_PT2, BEAD_PT2 = 0.8, 40.0, 25.0, 5.0
 NEARLY, SHARE = 0.04, 0.25
 #: The pen that fills. It is fine because rows may lie as far as its width from a border that runs along them.

@@ -1,13 +1,13 @@
 """The sweep: one layer of hatching, laid line by line as densely as a tone asks.
 
 A tile of strokes repeats, and the strokes chosen from it lie as unevenly as chance has it. Here
-nothing is chosen. Along the hatch runs u, across it v; the tone that the layer owes, divided by
-the width that the pen paints, is a number of lines per point, and its integral over v is a phase.
-A line is due wherever the phase has grown by one. A front moves over the sheet: it takes
-the place where a line is due first, lets it run on both ways for as long as the neighbours are due
-too, and cuts it into strokes of a hand's length, whose ends keep clear of the ends on the lines
-before. Then every stroke is moved to the middle between its neighbours, a few times over, and at
-last the hand's own variation is added.
+nothing is chosen. Along the hatch runs u, across it v. The tone that the layer owes, divided by
+the width that the pen paints, is a number of lines per point; its integral over v is a phase.
+A line is due wherever the phase has grown by one. A front moves over the sheet. Where a line is
+due first, it begins, and runs on both ways for as long as the neighbouring places are due too. It
+is cut into strokes of a hand's length, whose ends keep clear of the ends on the lines before. Then
+every stroke is moved to the middle between its neighbours, a few times over. At last the hand's
+own variation is added.
 
 This module alone imports the compiled kernel `sweep`.
 """

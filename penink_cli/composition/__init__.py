@@ -2,7 +2,7 @@
 
 compose.compose
   mixing     rims left out; red, green and blue weighed for contrast
-  relief     a base of broad tones, and the detail upon it
+  detail     a base of broad tones, and the detail upon it; relief: where there is some
   exposure   the base moved towards an illustrator's tones
   recolouring  the photograph's colours at the grey's lightness, for a drawing in several inks
   filters    what these smooth and shrink by

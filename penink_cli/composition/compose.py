@@ -16,7 +16,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from penink_cli.arrangement.gradient import noise_level
-from penink_cli.composition import exposure, mixing, recolouring, relief
+from penink_cli.composition import detail as raising
+from penink_cli.composition import exposure, mixing, recolouring
 from penink_cli.composition.filters import Picture, blurred, by_rows, looked_up, shrunk
 from penink_cli.ground.errors import ParameterError
 from penink_cli.ground.model import ColourImage, GreyImage
@@ -31,16 +32,17 @@ _BACKGROUND, _BUSY, _MOST_BUSY = 0.25, 0.8, 1.5  # the weight of places without 
 _PAGE, _PAGE_PAPER = 0.5, 0.985  # a picture more than half of which is so light is a page: its paper stays
 _INK, _PAPER = 0.05, 0.95  # what is darker is solid, what is lighter is bare
 # Amid what is nearly black, of σ DEEP_PT, tones go down by up to SINK: all of a dark cloth is black, not parts of it.
-# A Gaussian darker than ALL_DEEP has all of it, one lighter than NOT_DEEP nothing; so do places lighter than STAYS.
+# Where that Gaussian is darker than ALL_DEEP they go down wholly, where it is lighter than NOT_DEEP not at all; nor do
+# places that are lighter than STAYS themselves.
 _DEEP_PT, _SINK, _ALL_DEEP, _NOT_DEEP, _STAYS = 3.0, 0.07, 0.13, 0.21, 0.3
-# What was lighter than SHINES is a highlight and no relief, what was darker by NEARLY may be in full.
+# What was lighter than SHINES is a highlight and no relief; what was darker by NEARLY may wholly be in relief.
 _SHINES, _NEARLY = 0.90, 0.15
 # Broad lights from BLANK_FROM on go up until what is BLANK is bare paper: skin and skies are not combed with single
 # lines.
 _BLANK_FROM, _BLANK = 0.74, 0.90
-# So do lights of the whole, less steeply: what is steeper makes haloes.
+# So do all lights from LIGHT_FROM on, until BARE, but less steeply: a steeper curve makes haloes.
 _LIGHT_FROM, _BARE = 0.68, 0.92
-_LIGHTS, _MIDDLE = 0.75, 0.2  # what was so light is not lifted relief, what was darker by the second is in full
+_LIGHTS, _MIDDLE = 0.75, 0.2  # what was so light is no lifted relief; darker than that by MIDDLE it wholly is
 _TELLING = 1_500_000  # values, more or less, that tell the range of a photo
 _NARROW = 0.35  # of the range of grey: a photograph that uses no more is told of
 
@@ -180,7 +182,7 @@ def _composed(
     noise = noise_level(grey)
     key = exposure.inks(choice.target)
     key *= key
-    broad, carved = relief.base(grey, key, pt, threads, colours if colours.ndim == 3 else None)
+    broad, carved = raising.base(grey, key, pt, threads, colours if colours.ndim == 3 else None)
     detail = grey - broad
     weight = _weight(grey, noise, pt, threads)
     upto = exposure.histogram(broad, weight if fade is None else weight * fade)
@@ -200,7 +202,7 @@ def _composed(
     carved = by_rows(without_shine, carved, broad, threads=threads)
     exposed = _blank(exposed, carved, _BLANK_FROM, _BLANK, _PAPER, threads=threads)
     carved *= np.float32(min(key, 1.0))
-    result = relief.raised(detail, exposed, slopes, lifted, carved, choice.detail, noise, pt, threads)
+    result = raising.raised(detail, exposed, slopes, lifted, carved, choice.detail, noise, pt, threads)
     result = by_rows(
         lambda grey: np.clip((grey - np.float32(_INK)) * np.float32(1 / (_PAPER - _INK)), 0, 1), result, threads=threads
     )

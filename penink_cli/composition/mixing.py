@@ -1,8 +1,8 @@
 """The frame of a scan left out, and colours made grey by the weights of red, green and blue that keep most contrast.
 
 Luma gives many colours that differ to the eye the same grey: the red and the green of a parrot, say. So weights that
-sum to 1 are tried in steps of a tenth, and those taken that keep the most of the differences between places that lie
-near each other (after Gooch et al., Color2Gray, 2005, and Lu et al., Contrast Preserving Decolorization, 2012).
+sum to 1 are tried in steps of a tenth. Those are taken that keep most of the differences between places near each other
+(after Gooch et al., Color2Gray, 2005, and Lu et al., Contrast Preserving Decolorization, 2012).
 
 This module alone imports the compiled kernel `mixing`.
 """

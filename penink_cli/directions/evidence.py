@@ -18,10 +18,10 @@ from penink_cli.ground.model import ColourImage, EdgeList, Floats, GreyImage
 
 LONG = 384  # pixels of the long side of the view that tangents are taken of
 _HUE = 0.7  # how much a step in colour counts beside one in lightness
-_FINE = 0.8  # σ of the gradient, pixels of that view
+_FINE = 0.8  # σ with which gradients are taken, pixels of that view
 _GRAIN = 0.012  # a gradient, Lab lightness of 1 a pixel, that is hardly more than grain
 _AROUND = 6.0  # σ, pixels: each place's evidence is judged by what there is around
-_RIM = 0.012  # of the width: scans have dark rims, which would rule everything
+_RIM = 0.012  # of the width that counts nothing on each side: scans have dark rims, which would rule everything
 _BESIDE = 2.5  # pixels on either side of a strong edge that the silhouette has made, not the form
 STRONG = 0.15  # grey step of an edge that parts one thing from another
 _OUTSIDE, _INSIDE = 0.05, 0.5  # weight beside an edge: in the open, and where edges are all around
@@ -58,7 +58,7 @@ def tangents(photo: GreyImage | ColourImage, edges: EdgeList, noise: float) -> E
         vectors[..., 0] += dy * dy - dx * dx  # along the tones: −(dx + i dy)²
         vectors[..., 1] -= 2 * dx * dy
     square = np.sqrt(vectors[..., 0] * vectors[..., 0] + vectors[..., 1] * vectors[..., 1])
-    # By its gradient and not by the square of it: strong edges would shout all others down.
+    # Each place counts by its gradient and not by the square of it: strong edges would shout all others down.
     trust = _trust(edges, rows, columns)
     loud = trust * np.sqrt(square) / (square + _GRAIN * _GRAIN)
     around = _smooth(loud * square, _AROUND) / np.maximum(_smooth(trust, _AROUND), 0.15) + noise

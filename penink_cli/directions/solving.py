@@ -1,8 +1,8 @@
 """The smooth field that evidence leaves: a screened Poisson equation, its links cut at edges, its knots calmed.
 
-(λ L + κ w + p) x = d + p f, with L the Laplacian of the grid whose links are cut where strong edges pass, w the
-weight of the evidence, d its vectors, and a little p of the hatch's own direction f everywhere. Only here is anything
-smoothed: what is smoothed before leaks across edges.
+(λ L + κ w + p) x = d + p f. L is the Laplacian of the grid, whose links are cut where strong edges pass. w is the
+weight of the evidence, d its vectors, f the hatch's own direction, of which there is a little, p, everywhere. Nothing
+is smoothed before this: it would leak across edges.
 
 A line field cannot avoid singularities, places around which it makes half a turn, but it need not have more of them
 than the picture has: the evidence around each is weakened and the equation solved again. Knots and whorls are what

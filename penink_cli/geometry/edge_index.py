@@ -7,9 +7,33 @@ asked millions of times, and the arrangement's (`arrangement/_compiled/planar.py
 
 from __future__ import annotations
 
+import math
+from dataclasses import dataclass
+
 import numpy as np
 
 from penink_cli.ground.model import Floats, Ints
+
+
+@dataclass(frozen=True, eq=False)
+class EdgeGrid:
+    """Segments, and those near each square of a grid over them.
+
+    ends: (m, 4) x, y, x, y. size: of a square, as long. columns: squares in a row. Those near square c, which is
+    `columns` · row + column, are items[begin[c] : begin[c + 1]].
+    """
+
+    ends: Floats
+    size: float
+    columns: int
+    begin: Ints
+    items: Ints
+
+
+def grid(ends: Floats, size: float, width: float, height: float) -> EdgeGrid:
+    """Segments (m, 4) within width × height, by squares of that size; there is one more beyond the frame each way."""
+    columns, rows = math.ceil(width / size) + 2, math.ceil(height / size) + 2
+    return EdgeGrid(ends, size, columns, *lists(*cells(ends, size), columns, rows))
 
 
 def touched(low: Ints, high: Ints, columns: int) -> tuple[Ints, Ints]:

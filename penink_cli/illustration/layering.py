@@ -14,8 +14,8 @@ from penink_cli.ground.model import Floats, GreyImage, Illustration, Layer, Stro
 from penink_cli.illustration.drawing import Advance, enlarged, grey_size, lined, outlined, tone_curve
 
 LEAST_TONE = 1 / 255  # below it an overlay is paper
-#: Layers that share a sheet are hatched anew with what was left over, so many times in all at the most, unless
-#: what is left over is no more than blasting one layer leaves (RMS of tone as the eye sees it).
+#: Layers that share a sheet are hatched anew with what was left over: this often in all at the most, and no more once
+#: the rest is no greater than what blasting one layer leaves (RMS of tone as the eye sees it).
 ROUNDS, GOOD = 3, 0.006
 
 

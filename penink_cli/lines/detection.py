@@ -46,9 +46,9 @@ INHIBITION = 0.25
 ALONE = 0.4
 #: A light line must be lighter, by RIDGE, than what lies BESIDE pixels from it on either side.
 BESIDE, RIDGE = 3.0, 0.03
-#: A spot's rank is SPOT times the cube of its contrast, times LONG_SPOT where it is longer than broad. It is less where
-#: lines around it answer more than CALM (a spot in lettering is a letter), where it is broader than SMALL pixels
-#: (hatching can show it), and where its border has less than CRISP of the contrast.
+#: A spot's rank is SPOT times the cube of its contrast, times LONG_SPOT where it is longer than broad. Three things
+#: make it less. Lines around it answer more than CALM: a spot in lettering is a letter. It is broader than SMALL
+#: pixels: hatching can show it. Its border has less than CRISP of the contrast.
 SPOT, LONG_SPOT, CALM, SMALL, CRISP = 12.0, 0.6, 0.004, 12.0, 0.45
 #: The darkness from which on a spot is drawn as broad as it is; a lighter one is drawn smaller.
 DARK = 0.75

@@ -1,7 +1,7 @@
 """Transparent inks that lie over one another: what colour a pixel has where several cover parts of it.
 
-Each ink is a filter: where it lies it lets through a part of the light, in each of red, green and blue, that its colour
-on white paper says. What covers a part of a pixel lets through the rest of it whole, and inks cover parts that know
+Each ink is a filter. Where it lies, it lets through a part of the red, the green and the blue light: its colour on
+white paper says which. What it does not cover of a pixel lets all light through. Inks cover parts of a pixel that know
 nothing of each other (Demichel), so the light of all is the product of what each lets through (after Neugebauer, 1937).
 Light adds up in linear values; sRGB's curve leads there and back.
 """

@@ -35,8 +35,8 @@ Grey32 = npt.NDArray[np.float32]
 
 MAX_ERROR = 8 / 255
 MAX_SEEN_ERROR = 4.5 / 255  # of what a drawing at a size shows
-#: Of a photo whose detail, what a drawing shows of it less its means over so many times what that blurs, is fainter
-#: than this (RMS), as much less: in a faint one the same error hides more.
+#: A photo's detail is what a drawing shows of it, less its means over _AROUND times what a drawing blurs. Where detail
+#: is fainter than FAINT (RMS), less error is allowed in proportion: in a faint photo the same error hides more.
 FAINT, _AROUND = 28 / 255, 8
 _LEAST_PART = 0.5  # of MAX_SEEN_ERROR
 SEEN_PT = 1.0  # σ of the blur: hatching shows nothing finer

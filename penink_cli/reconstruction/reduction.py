@@ -80,11 +80,9 @@ def _take_near_edges(values: npt.NDArray[np.float32], edges: EdgeList, out: Floa
     height, width = out.shape
     old_height, old_width = values.shape
     near = walls.distances(edges, width, height, _NEAR)
-    lines = walls.segments(edges, old_width, old_height)
+    lines = np.column_stack(walls.segments(edges, old_width, old_height))
     ground = walkable(edges, old_width, old_height)
-    across, down = int(old_width // _CELL) + 2, int(old_height // _CELL) + 2
-    index = edge_index.lists(*edge_index.cells(np.column_stack(lines), _CELL), across, down)
-    near_by = _clean.Edges(*lines, _CELL, across, *index)
+    near_by = _clean.Edges(edge_index.grid(lines, _CELL, old_width, old_height))
     factor = min(_clean.MAX_REACH - 1, max(old_width / width, old_height / height))
 
     def rows(first: int, last: int) -> None:

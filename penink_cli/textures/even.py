@@ -1,8 +1,8 @@
 """Placing things on a torus so that every prefix of them is evenly spread.
 
-Greedy: of many random candidates the next is the one that lies in the emptiest place. Empty is
-measured by a potential, the sum over all ink so far of a kernel that falls off with distance on all
-scales at once (1/r, softened), so that the first ten and the first thousand are both even.
+Greedy: of many random candidates the next is the one that lies in the emptiest place. How empty a
+place is, a potential tells: the sum over all ink so far of a kernel that falls off with distance,
+1/r, softened. It does so on all scales at once: the first ten and the first thousand are both even.
 """
 
 from __future__ import annotations

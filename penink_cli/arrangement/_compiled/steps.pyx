@@ -42,10 +42,10 @@ cdef class Photo:
     """A photo and its edges, and what is known of each of its pixels.
 
     grey: (h, w). away: (h, w) distance of pixels' centres from edges, infinite where nothing is mixed.
-    met: (h, w) which steps between centres meet an edge, as of `geometry.walls`. ends: (m, 4) x, y, x, y, pixels.
-    begin, items: which edges are near each square of `cell` pixels, `columns` of them in a row, as of
-    `geometry.edge_index.lists`. mixed: (k,) the part of a pixel that is the other side's, by its distance in parts of
-    a pixel. clean: pixels farther from edges are trusted.
+    met: (h, w) which steps between centres meet an edge, as of `geometry.walls`.
+    near: the edges, pixels, by the squares that they are near, a `geometry.edge_index.EdgeGrid`.
+    mixed: (k,) the part of a pixel that is the other side's, by its distance in `parts` of a pixel.
+    clean: pixels farther from edges are trusted.
     """
 
     cdef float[:, ::1] grey, away
@@ -58,17 +58,17 @@ cdef class Photo:
     cdef double parts, clean, far
 
     def __init__(
-        self, float[:, ::1] grey, float[:, ::1] away, unsigned char[:, ::1] met, double[:, ::1] ends, double cell,
-        Py_ssize_t columns, long long[::1] begin, long long[::1] items, double[::1] mixed, double parts, double clean,
+        self, float[:, ::1] grey, float[:, ::1] away, unsigned char[:, ::1] met, near, double[::1] mixed, double parts,
+        double clean,
     ) -> None:
         self.grey = grey
         self.away = away
         self.met = met
-        self.ends = ends
-        self.cell = cell
-        self.columns = columns
-        self.begin = begin
-        self.items = items
+        self.ends = near.ends
+        self.cell = near.size
+        self.columns = near.columns
+        self.begin = near.begin
+        self.items = near.items
         self.mixed = mixed
         self.parts = parts
         self.far = (mixed.shape[0] - 1) / parts

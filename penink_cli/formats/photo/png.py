@@ -1,7 +1,7 @@
 """PNG (ISO/IEC 15948): every kind at the depth it is stored with. What carries no pixels decides nothing.
 
-Read here and not by an image library because that refuses a picture for its comments, shows damage as black rows,
-cuts 16 bits of colour to 8 and compares the one transparent value after it has changed the depth.
+Image libraries are not used. The usual one refuses a picture for its comments, shows damage as black rows, cuts 16 bits
+of colour to 8, and compares the one transparent value after it has changed the depth.
 """
 
 from __future__ import annotations

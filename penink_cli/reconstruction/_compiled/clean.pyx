@@ -202,31 +202,24 @@ def extrapolate(
 cdef class Edges:
     """Edges among the pixels of an image, and which of them are near each square of `cell` pixels.
 
-    ax, ay, bx, by: (m,) their ends, pixels. begin, items: lists of the squares, `columns` of them in a row, as of
-    `geometry.edge_index.lists`.
+    near: a `geometry.edge_index.EdgeGrid`, pixels.
     """
 
-    cdef double[::1] ax, ay, bx, by
+    cdef double[:, ::1] ends
     cdef double cell
     cdef Py_ssize_t columns
     cdef long long[::1] begin, items
 
-    def __init__(
-        self, double[::1] ax, double[::1] ay, double[::1] bx, double[::1] by, double cell, Py_ssize_t columns,
-        long long[::1] begin, long long[::1] items,
-    ) -> None:
-        self.ax = ax
-        self.ay = ay
-        self.bx = bx
-        self.by = by
-        self.cell = cell
-        self.columns = columns
-        self.begin = begin
-        self.items = items
+    def __init__(self, near) -> None:
+        self.ends = near.ends
+        self.cell = near.size
+        self.columns = near.columns
+        self.begin = near.begin
+        self.items = near.items
 
     cdef bint hides(self, int e, double px, double py, double qx, double qy) noexcept nogil:
         """Whether edge e cuts the segment from p to q, both shifted by (ε, ε²)."""
-        cdef double ax = self.ax[e], ay = self.ay[e], bx = self.bx[e], by = self.by[e]
+        cdef double ax = self.ends[e, 0], ay = self.ends[e, 1], bx = self.ends[e, 2], by = self.ends[e, 3]
         if side_of_query(ax, ay, bx, by, px, py) == side_of_query(ax, ay, bx, by, qx, qy):
             return False
         return side_of_vertex(px, py, qx, qy, ax, ay) != side_of_vertex(px, py, qx, qy, bx, by)
