@@ -17,6 +17,7 @@ import numpy as np
 from penink_cli.arrangement.detection import detect_edges
 from penink_cli.blasting import hatching
 from penink_cli.blasting.blast import blast
+from penink_cli.blasting.solids import PEN_PT
 from penink_cli.directions.detection import detect_directions
 from penink_cli.formats import directions as directions_format
 from penink_cli.ground.model import Directions, EdgeList, Floats, GreyImage, Strokes
@@ -124,12 +125,14 @@ def pens() -> None:
 
 
 def lengths() -> None:
+    """Of hatching; what fills black is no hatching."""
     print("mean length, pt, 6 in: crosshatch straight  along  form straight  along  (within a tenth)")
     for name in PHOTOS:
-        means = [
-            measures.lengths(draw(name, 6, texture, along)[1]).mean()
-            for texture in ("crosshatch", "form") for along in (False, True)
-        ]  # fmt: skip
+        means = []
+        for texture in ("crosshatch", "form"):
+            for along in (False, True):
+                strokes = draw(name, 6, texture, along)[1]
+                means.append(measures.lengths(strokes.taken(strokes.widths != PEN_PT)).mean())
         print(f"  {name:29} {means[0]:10.1f} {means[1]:6.1f} {means[2]:14.1f} {means[3]:6.1f}", flush=True)
 
 
@@ -148,6 +151,7 @@ def bytes_() -> None:
 SPEED = """
 import io, sys, time, numpy as np
 from penink_cli.blasting.blast import blast
+from penink_cli.blasting.solids import PEN_PT
 from penink_cli.formats import directions as directions_format
 from penink_cli.options.textures import find_texture
 texture, along, w, h, threads = sys.argv[1], sys.argv[2] == "along", *map(float, sys.argv[3:])
