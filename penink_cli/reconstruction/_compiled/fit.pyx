@@ -2,45 +2,32 @@
 """Compiled: least squares against what a camera saw of a reconstruction that is a matrix. See fit.py."""
 
 
+cdef extern from "fit_rows.h" nogil:
+    void see_row(
+        const float* weight, const int* base, const float* samples, Py_ssize_t stride, float* out, Py_ssize_t n
+    )
+    void unsee_row(
+        const float* weight, const int* base, float* samples, Py_ssize_t stride, const float* pixels, Py_ssize_t n
+    )
+
+
 cdef void _see(
     float[:, :, ::1] weight, int* x_base, int* y_base, float[:, ::1] samples, float[:, ::1] out
 ) noexcept nogil:
     """Pixels of a block from its samples; the bases are counted from the block's first sample."""
-    cdef Py_ssize_t p, q, i, j
-    cdef float* w
-    cdef float* s
-    cdef float[5] sums  # a column of samples each, which makes a vector of them
+    cdef Py_ssize_t p
     for p in range(weight.shape[0]):
-        for q in range(weight.shape[1]):
-            w = &weight[p, q, 0]
-            s = &samples[y_base[p], x_base[q]]
-            for j in range(5):
-                sums[j] = 0.0
-            for i in range(5):
-                for j in range(5):
-                    sums[j] += w[5 * i + j] * s[j]
-                s += samples.shape[1]
-            out[p, q] = (sums[0] + sums[1]) + (sums[2] + sums[3]) + sums[4]
+        see_row(&weight[p, 0, 0], x_base, &samples[y_base[p], 0], samples.shape[1], &out[p, 0], weight.shape[1])
 
 
 cdef void _unsee(
     float[:, :, ::1] weight, int* x_base, int* y_base, float[:, ::1] pixels, float[:, ::1] out
 ) noexcept nogil:
     """The transpose of `_see`."""
-    cdef Py_ssize_t p, q, i, j
-    cdef float* w
-    cdef float* s
-    cdef float v
+    cdef Py_ssize_t p
     out[:, :] = 0
     for p in range(weight.shape[0]):
-        for q in range(weight.shape[1]):
-            w = &weight[p, q, 0]
-            s = &out[y_base[p], x_base[q]]
-            v = pixels[p, q]
-            for i in range(5):
-                for j in range(5):
-                    s[j] += w[5 * i + j] * v
-                s += out.shape[1]
+        unsee_row(&weight[p, 0, 0], x_base, &out[y_base[p], 0], out.shape[1], &pixels[p, 0], weight.shape[1])
 
 
 cdef inline Py_ssize_t _reflected(Py_ssize_t i, Py_ssize_t n) noexcept nogil:
