@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from penink_cli.ground.model import ColourImage, Directions, EdgeList, GreyImage, Illustration, Lines, Strokes
 
 F = TypeVar("F", bound=Callable[..., Any])
+T = TypeVar("T")
 
 PHOTO_PIXELS = 250_000_000  # of a photograph and of samples as large: telephones take more than 100 megapixels
 ENLARGED_PIXELS = 4 * PHOTO_PIXELS  # what the chain makes of such a photograph
@@ -29,7 +30,7 @@ ALPHA = "alpha"
 NAMED = {"white": (255, 255, 255), "black": (0, 0, 0), "grey": (128, 128, 128)}
 _META = "penink.photo"
 _photos: dict[str | None, tuple[changes.State, ColourImage | GreyImage]] | None = None  # remembered, by their paths
-_edges: tuple[changes.State, EdgeList] | None = None  # the last ones read from the workbench, and their text
+_last: dict[str, tuple[changes.State, Any]] = {}  # the edges, and the lines, last read from the workbench; their text
 MAX_MEMBER = 1 << 28  # bytes of a file that a manifest names
 
 
@@ -160,12 +161,13 @@ def read_to_blast(path: str | None, max_pixels: int) -> GreyImage:
 @contextmanager
 def remembering_photos() -> Iterator[None]:
     """While the block runs, a photograph that several filters of one process read is decoded once."""
-    global _photos, _edges
+    global _photos
     before, _photos = _photos, {}
     try:
         yield
     finally:
-        _photos, _edges = before, None
+        _photos = before
+        _last.clear()
 
 
 def _remembered(path: str | None, read: Callable[[], ColourImage | GreyImage]) -> ColourImage | GreyImage:
@@ -228,26 +230,36 @@ def read_edges(path: str | None, max_pixels: int = 0) -> EdgeList | None:
 
     What one filter of this process has read from the workbench the next one is given.
     """
-    global _edges  # noqa: PLW0603
     if path is None:
         return None
-    from penink_cli.formats import edge_list
-    from penink_cli.geometry import validity
 
+    def read() -> EdgeList:
+        from penink_cli.formats import edge_list
+        from penink_cli.geometry import validity
+
+        source = streams.source_name(path)
+        with streams.reading(path) as stream:
+            edges = edge_list.read(stream, source, max_pixels)
+        try:
+            validity.check(edges)
+        except PeninkError as error:
+            raise error.from_source(source) from None
+        return edges
+
+    return _read_once("edges", path, read)
+
+
+def _read_once(kind: str, path: str, read: Callable[[], T]) -> T:
+    """What `read` reads from a file, or has read from the same text on the workbench."""
     text = streams.state(path) if streams.on_bench(path) else None
-    if text is not None and _edges is not None and _edges[0] == text:
+    if text is None:
+        return read()
+    if kind in _last and _last[kind][0] == text:
         changes.note(path, text)
-        return _edges[1]
-    source = streams.source_name(path)
-    with streams.reading(path) as stream:
-        edges = edge_list.read(stream, source, max_pixels)
-    try:
-        validity.check(edges)
-    except PeninkError as error:
-        raise error.from_source(source) from None
-    if text is not None:
-        _edges = text, edges
-    return edges
+        return _last[kind][1]
+    found = read()
+    _last[kind] = text, found
+    return found
 
 
 def read_directions(path: str | None, width: int, height: int, max_pixels: int) -> Directions | None:
@@ -284,14 +296,21 @@ def read_strokes_or_svg(path: str | None) -> Strokes | None:
 
 
 def read_lines(path: str | None, photo: GreyImage | ColourImage | None = None) -> Lines | None:
-    """Telling lines; None where no file is given. Raises FormatError for a frame of another shape than the photo's."""
+    """Telling lines; None where no file is given. Raises FormatError for a frame of another shape than the photo's.
+
+    What one filter of this process has read from the workbench the next one is given.
+    """
     if path is None:
         return None
-    from penink_cli.formats import lines
-
     source = streams.source_name(path)
-    with streams.reading(path) as stream:
-        found = lines.read(stream, source)
+
+    def read() -> Lines:
+        from penink_cli.formats import lines
+
+        with streams.reading(path) as stream:
+            return lines.read(stream, source)
+
+    found = _read_once("lines", path, read)
     height, width = (found.height, found.width) if photo is None else photo.values.shape[:2]
     if not same_shape(found.width, found.height, width, height):
         picture = f"the photo has {width} x {height}, which is another shape"
