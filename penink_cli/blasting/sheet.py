@@ -12,7 +12,7 @@ own is what the stroke itself adds at p. So a trial costs one look-up a sample.
 A device paints every pixel that a stroke touches. It thereby widens a stroke of direction
 θ by (|cos θ| + |sin θ|) of its pixels; `gain_pt` is the size of that pixel, 0 for none.
 
-This module alone imports the compiled kernels `ink`, `placing`, `press` and `swelling`.
+This module alone imports the compiled kernels `ink`, `placing`, `press`, `resampling` and `swelling`.
 """
 
 from __future__ import annotations
@@ -27,6 +27,7 @@ import numpy.typing as npt
 from penink_cli.blasting._compiled import ink as _ink
 from penink_cli.blasting._compiled import placing as _placing
 from penink_cli.blasting._compiled import press as _press
+from penink_cli.blasting._compiled import resampling as _resampling
 from penink_cli.blasting._compiled import swelling as _swelling
 from penink_cli.blasting.curves import Polylines, pieces_of, sample
 from penink_cli.blasting.low_pass import Cells, LowPass
@@ -312,22 +313,33 @@ def resample(tone: Floats, rows: int, columns: int, *, least: float = 0.0) -> Fl
 
     least: of its values, which are 1 at the most; -1 for differences of tones. Rounding does not pass either.
     """
-    return _resample_rows(_resample_rows(tone, rows, least).T, columns, least).T.copy()
+    tone = np.ascontiguousarray(tone, None if tone.dtype == np.float32 else np.float64)
+    h, w = tone.shape
+    down, across = _stretched(h, rows), _stretched(w, columns)
+    if rows != h:
+        out = np.empty((rows, w))
+        if rows < h:
+            _resampling.means_down(tone, *down, least, np.empty((2, w)), out)
+        else:
+            _resampling.blends_down(tone, *down, out)
+        tone = out
+    if columns != w:
+        out = np.empty((rows, columns))
+        if columns < w:
+            _resampling.means_across(tone, *across, least, out)
+        else:
+            _resampling.blends_across(tone, *across, out)
+        return out
+    return tone if rows != h else tone.copy()
 
 
-def _resample_rows(tone: Floats, n: int, least: float) -> Floats:
-    h = len(tone)
-    if n == h:
-        return tone
-    if n > h:
-        at = np.clip((np.arange(n) + 0.5) * h / n - 0.5, 0, h - 1)
-        lo = np.minimum(at.astype(np.int64), max(0, h - 2))
-        f = (at - lo)[:, None]
-        return tone[lo] * (1 - f) + tone[np.minimum(lo + 1, h - 1)] * f
-    total = np.zeros((h + 1, tone.shape[1]))
-    np.cumsum(tone, axis=0, out=total[1:])
-    bounds = np.arange(n + 1) * (h / n)
-    lo = np.minimum(bounds.astype(np.int64), h - 1)
-    part = (bounds - lo)[:, None]
-    edge = total[lo] * (1 - part) + total[lo + 1] * part
-    return np.asarray(np.clip(np.diff(edge, axis=0) * (n / h), least, 1.0), np.float64)
+def _stretched(have: int, n: int) -> tuple[Ints, Floats]:
+    """In which of so many values each of n cells begins, and the end of the last, and how far in; or, of more cells,
+    which value is before the middle of each, and how much of the next one there is."""
+    if n < have:
+        bounds = np.arange(n + 1) * (have / n)
+        at = np.minimum(bounds.astype(np.int64), have - 1)
+        return at, bounds - at
+    where = np.clip((np.arange(n) + 0.5) * have / n - 0.5, 0, have - 1)
+    at = np.minimum(where.astype(np.int64), max(0, have - 2))
+    return at, where - at

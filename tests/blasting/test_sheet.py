@@ -93,6 +93,25 @@ def test_the_low_pass_stops_at_steps_as_the_oracle_does(shape, sigma):
     assert np.abs(low_pass(values) - wanted).max() < 1e-5
 
 
+@pytest.mark.parametrize("shape", [(12, 9), (4, 9), (12, 3), (5, 4), (25, 30), (1, 1)])
+@pytest.mark.parametrize("number", [np.float32, np.float64])
+def test_values_are_stretched_by_means_and_between_middles(shape, number):
+    """Each axis by itself: a matrix of how much of each value is in each cell, or between which middles it is."""
+    values = np.random.default_rng(4).random((12, 9)).astype(number) * 2 - 1
+
+    def matrix(have: int, n: int) -> np.ndarray:
+        if n <= have:  # the overlap of cells with values
+            begin, end = (np.arange(n)[:, None] + k for k in (0, 1))
+            overlap = np.minimum(end * have / n, np.arange(1, have + 1)) - np.maximum(begin * have / n, np.arange(have))
+            return np.maximum(overlap, 0) * n / have
+        middles = np.clip((np.arange(n) + 0.5) * have / n - 0.5, 0, have - 1)
+        return np.maximum(0, 1 - np.abs(middles[:, None] - np.arange(have)))
+
+    wanted = matrix(12, shape[0]) @ values.astype(float) @ matrix(9, shape[1]).T
+    assert np.abs(resample(values, *shape, least=-1.0) - wanted).max() < 1e-12
+    assert (resample(np.full((12, 9), 1.0, number), *shape) <= 1.0).all()
+
+
 def test_wider_vectors_change_no_byte():
     """The low-pass, and strokes that are tried and drawn; the same by vectors that every processor has."""
     tone = np.random.default_rng(1).random((60, 90)) * 0.7

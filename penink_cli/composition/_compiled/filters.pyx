@@ -123,24 +123,32 @@ def down(const float[:, ::1] values, const float[::1] weights, float[:, ::1] out
 
 def enlarge(const float[:, ::1] values, float[:, ::1] out, Py_ssize_t top, Py_ssize_t bottom):
     """Rows top … bottom of out (h, w): values (rows, columns) of the same frame, linear in between."""
-    cdef Py_ssize_t rows = values.shape[0], columns = values.shape[1], h = out.shape[0], w = out.shape[1], y, x, i
+    cdef Py_ssize_t rows = values.shape[0], columns = values.shape[1], h = out.shape[0], w = out.shape[1], y, x, i, k
     cdef double at
-    cdef float share
+    cdef float share, here, step
     cdef const float *above
     cdef const float *below
+    cdef float *row
     cdef float *mixed = <float *>malloc(columns * sizeof(float))
     cdef float *shares = <float *>malloc(w * sizeof(float))
-    cdef Py_ssize_t *left = <Py_ssize_t *>malloc(w * sizeof(Py_ssize_t))
-    if mixed == NULL or shares == NULL or left == NULL:
+    cdef Py_ssize_t *begin = <Py_ssize_t *>malloc((columns + 1) * sizeof(Py_ssize_t))  # the first place between two
+    if mixed == NULL or shares == NULL or begin == NULL:
         free(mixed)
         free(shares)
-        free(left)
+        free(begin)
         raise MemoryError
     with nogil:
+        i = 0
         for x in range(w):
             at = min(max((x + 0.5) * columns / w - 0.5, 0.0), columns - 1.0)
-            left[x] = max(0, min(<Py_ssize_t>at, columns - 2))
-            shares[x] = <float>(at - left[x])
+            k = max(0, min(<Py_ssize_t>at, columns - 2))
+            shares[x] = <float>(at - k)
+            while i <= k:
+                begin[i] = x
+                i += 1
+        while i <= columns:
+            begin[i] = w
+            i += 1
         for y in range(top, bottom):
             at = min(max((y + 0.5) * rows / h - 0.5, 0.0), rows - 1.0)
             i = max(0, min(<Py_ssize_t>at, rows - 2))
@@ -148,12 +156,15 @@ def enlarge(const float[:, ::1] values, float[:, ::1] out, Py_ssize_t top, Py_ss
             above, below = &values[i, 0], &values[min(i + 1, rows - 1), 0]
             for x in range(columns):
                 mixed[x] = above[x] + share * (below[x] - above[x])
-            for x in range(w):
-                i = left[x]
-                out[y, x] = mixed[i] + shares[x] * (mixed[min(i + 1, columns - 1)] - mixed[i])
+            row = &out[y, 0]
+            for i in range(columns):
+                here = mixed[i]
+                step = mixed[min(i + 1, columns - 1)] - here
+                for x in range(begin[i], begin[i + 1]):
+                    row[x] = here + shares[x] * step
     free(mixed)
     free(shares)
-    free(left)
+    free(begin)
 
 
 def look_up(
