@@ -161,7 +161,7 @@ def read_to_blast(path: str | None, max_pixels: int) -> GreyImage:
 @contextmanager
 def remembering_photos() -> Iterator[None]:
     """While the block runs, a photograph that several filters of one process read is decoded once."""
-    global _photos
+    global _photos  # noqa: PLW0603
     before, _photos = _photos, {}
     try:
         yield
