@@ -72,7 +72,9 @@ def blends_down(const real[:, ::1] values, const long long[::1] at, const double
                 out[i, j] = values[row, j] * (1.0 - part[i]) + values[after, j] * part[i]
 
 
-def blends_across(const real[:, ::1] values, const long long[::1] at, const double[::1] part, double[:, ::1] out) -> None:
+def blends_across(
+    const real[:, ::1] values, const long long[::1] at, const double[::1] part, double[:, ::1] out
+) -> None:
     """The same along rows: values (h, w), out (h, n)."""
     cdef Py_ssize_t i, k
     with nogil:
