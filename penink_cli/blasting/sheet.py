@@ -340,6 +340,6 @@ def _stretched(have: int, n: int) -> tuple[Ints, Floats]:
         bounds = np.arange(n + 1) * (have / n)
         at = np.minimum(bounds.astype(np.int64), have - 1)
         return at, bounds - at
-    where = np.clip((np.arange(n) + 0.5) * have / n - 0.5, 0, have - 1)
+    where: Floats = np.clip((np.arange(n) + 0.5) * have / n - 0.5, 0, have - 1)
     at = np.minimum(where.astype(np.int64), max(0, have - 2))
     return at, where - at
