@@ -339,7 +339,7 @@ def _stretched(have: int, n: int) -> tuple[Ints, Floats]:
     if n < have:
         bounds = np.arange(n + 1) * (have / n)
         at = np.minimum(bounds.astype(np.int64), have - 1)
-        return at, bounds - at
+        return at, np.asarray(bounds - at, np.float64)
     where: Floats = np.clip((np.arange(n) + 0.5) * have / n - 0.5, 0, have - 1)
     at = np.minimum(where.astype(np.int64), max(0, have - 2))
-    return at, where - at
+    return at, np.asarray(where - at, np.float64)
