@@ -26,7 +26,7 @@ from penink_cli.blasting.curve_fitting import over_chords
 from penink_cli.blasting.shares import ALONE, shares
 from penink_cli.blasting.sheet import Cells, Sheet, Terms
 from penink_cli.ground import threads as threading
-from penink_cli.ground.device import MEAN
+from penink_cli.ground.device import MEAN, least
 from penink_cli.ground.model import EdgeList, Floats, HatchLayer, Strokes
 
 if TYPE_CHECKING:
@@ -129,7 +129,7 @@ def hatch_sheet(
     examples: strokes of a set, laid along the directions in place of lines; the layers are `stroke_set.passes`.
     """
     borders = walls.build(edges, sheet, max(pen_pt or layer.pen_pt for layer in layers))
-    pens = [pen_pt or layer.pen_pt for layer in layers]
+    pens = [pen_pt or max(layer.pen_pt, least(gain_pt)) for layer in layers]
     finest = pens if pen_pt else [min(pen, max(FINE * pen, FINE_DOTS * gain_pt)) for pen in pens]
     form = None if directions is None else _form(sheet, layers, directions, examples, pen_pt, borders)
     hatch = Hatch(layers, pens, finest, gain_pt, borders, form, seed, SWEEPS if examples is None else SET_SWEEPS)
@@ -307,8 +307,7 @@ def press(sheet: Sheet, strokes: Strokes, seed: int, crowd: Cells | None = None)
     middle = lines.points[(lines.first[:-1] + lines.first[1:]) // 2] * (sheet.scale / 8)
     at = np.clip(middle.astype(np.int64), 0, (sheet.columns - 1, sheet.rows - 1))
     pressure = PRESSURE * crowd[at[:, 1], at[:, 0]].astype(np.float64)
-    widths = sheet.press(
-        lines, strokes.widths, strokes.widths * (1 - pressure), strokes.widths * (1 + pressure), order, PRESSES
-    )
+    lightest = np.maximum(strokes.widths * (1 - pressure), np.minimum(strokes.widths, least(sheet.gain_pt)))
+    widths = sheet.press(lines, strokes.widths, lightest, strokes.widths * (1 + pressure), order, PRESSES)
     widths = np.maximum(np.round(widths, 2), 0.01)
     return replace(strokes, widths=widths)

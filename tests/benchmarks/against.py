@@ -26,7 +26,7 @@ CALLS = {
     "extract-samples": "extract-samples -e e.json photo.pgm -o out",
     "blast crosshatch": "blast -e e.json --width 6in --texture crosshatch photo.pgm -o out",
     "blast stipple": "blast -e e.json --width 6in --texture stipple photo.pgm -o out",
-    "blast bricks": "blast -e e.json --width 6in --texture bricks photo.pgm -o out",
+    "blast brick": "blast -e e.json --width 6in --texture brick photo.pgm -o out",
     "to-ps": "to-ps hatching.jsonl -o out",
     "to-svg": "to-svg hatching.jsonl -o out",
     "to-pgm": "to-pgm --dpi 150 hatching.jsonl -o out",

@@ -3,6 +3,11 @@
 The library's decoder guesses where codes are damaged and says so to nobody. Here all codes of all scans are read first
 (`_compiled/jpeg_scans`, a fraction of the time of decoding), so that damage is known, and where; comments, profiles,
 bytes between segments and whatever else carries no pixels are left out of what is decoded, and decide nothing.
+
+What the check is worth (`python -m tests.benchmarks.worth codes`): of 2000 files that were cut or had a bit struck the
+library gives other pixels for some 1480 without a word. A quarter (baseline) to two fifths (progressive) of these are
+refused, and next to none whose pixels are the same; the others are files that somebody might have written. It takes
+three quarters of the time of decoding, and comes before it: nothing is decoded twice.
 """
 
 from __future__ import annotations
