@@ -291,6 +291,27 @@ def large() -> None:
             print(f"{name:10s} together         {wall:5.1f} {processor:6.1f} {max(f[2] for f in whole.values()):6.0f}")
 
 
+def mosaics() -> None:
+    """Large photographs that are nothing but details: many small photographs side by side, drawn by all of `draw`."""
+    print("\nmosaics of photographs drawn: megapixels, s of processor, MB, KB of drawing")
+    tiles = [Image.fromarray(np.uint8(photograph(name) * 255)).resize((240, 160)) for name in PHOTOS]
+    for width, height in ((3840, 2560), (6000, 4000)):
+        mosaic = Image.new("L", (width, height))
+        for k in range(-(-width // 240) * -(-height // 160)):
+            row, column = divmod(k, -(-width // 240))
+            mosaic.paste(tiles[(k * 7 + row) % len(tiles)], (240 * column, 160 * row))
+        with tempfile.TemporaryDirectory() as folder:
+            mosaic.save(Path(folder) / "p.jpg", quality=90)
+            for style in ("true", "house"):
+                command = [sys.executable, "-m", "penink_cli", "draw", "p.jpg", "--style", style, "-o", "d.ps"]
+                process = subprocess.Popen([*command, "--width", "10in"], cwd=folder)
+                _, status, usage = os.wait4(process.pid, 0)
+                assert status == 0
+                size, spent = (Path(folder) / "d.ps").stat().st_size, usage.ru_utime + usage.ru_stime
+                print(f"{width} x {height} {style:6} {width * height / 1e6:5.0f}", end="")
+                print(f"{spent:7.1f}{usage.ru_maxrss / 1e3:7.0f}{size / 1000:8.0f}", flush=True)
+
+
 def _filters(pixels: np.ndarray, folder: str) -> dict[str, tuple[float, float, float]]:
     """Seconds, seconds of processor and megabytes of each filter."""
     Image.fromarray(pixels).save(Path(folder) / "p.png")
@@ -449,6 +470,7 @@ PARTS = {
     "hostile": hostile,
     "storage": storage,
     "large": large,
+    "mosaics": mosaics,
 }
 
 
