@@ -7,7 +7,7 @@ PAQ"). All of it is integer arithmetic: the same numbers give the same bytes on 
 general compressor's library promises from no version to the next.
 
 What it is worth (`python -m tests.benchmarks.worth coder`, three photographs reduced 4 times, 8 bits): samples take .88
-to .93 of PNG and .86 to .89 of xz, edges .75 to .79 of their steps deflated and .80 to .87 of xz, strengths included.
+to .93 of PNG and .86 to .89 of xz, edges .69 to .72 of their steps deflated and .73 to .80 of xz, strengths included.
 
 One `Coder` both writes and reads. Each method takes the value to write and returns it, or
 takes anything and returns the value read, so that writer and reader cannot disagree on the model.
