@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from penink_cli.blasting import hatching, marks, reserved, solids
+from penink_cli.blasting import curves, hatching, marks, reserved, solids
 from penink_cli.blasting.light import LightThings
 from penink_cli.blasting.sheet import Cells, Sheet, coverage, resample
 from penink_cli.ground.angles import direction
@@ -21,6 +21,8 @@ from penink_cli.ground.recall import recalled
 MARK_PT = 0.5
 #: Cells of which so much lies within a point of a small dark thing belong to it.
 NEAR_MARK = 0.3
+#: Tone below which nothing asks for a stroke.
+BARE = 0.02
 #: Layers that go so far reach black.
 ALMOST = 0.99
 #: Degrees at which a set of strokes lies where no directions are given.
@@ -112,6 +114,17 @@ class Begun:
             sheet.tone = sheet.tone * (1 - part) + np.where(part > 0, covered + dark_by, 0)
         return strokes
 
+    def _brought_on(self, strokes: Strokes, near: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
+        """Which strokes (n,) that are never cut a small dark thing has brought on, and run from it over bare paper."""
+        lines = curves.sample(strokes.points, strokes.first, curves.pieces_of(strokes.points, strokes.first, 0.5))
+        rows, columns = near.shape
+        at = np.clip((lines.points * (self.sheet.scale / 8)).astype(np.int64), 0, (columns - 1, rows - 1))
+        there = near[at[:, 1], at[:, 0]]
+        bare = ~there & (self.sheet.tone[at[:, 1], at[:, 0]] < BARE)
+        meets, paper, beyond = (np.add.reduceat(each.astype(int), lines.first[:-1]) for each in (there, bare, ~there))
+        found: npt.NDArray[np.bool_] = (meets > 0) & (2 * paper > beyond)
+        return found
+
     @cached_property
     def field(self) -> tuple[Cells, Cells] | None:
         """Cosine and sine of twice the angle of the task's field in each cell, (rows, columns); None without one."""
@@ -133,4 +146,6 @@ class Begun:
     def with_small(self, strokes: Strokes) -> Strokes:
         """The strokes, on those of small dark things and solid black, and out of small light ones."""
         strokes = self.light.kept_out(strokes, MEAN * self.task.gain)
+        if self.task.texture.whole and self.near is not None and len(strokes):
+            strokes = strokes.taken(~self._brought_on(strokes, self.near))
         return Strokes.joined([self.small, strokes]) if len(self.small) else strokes

@@ -74,6 +74,18 @@ def test_discs_by_other_rules(rule, diameter):
     assert light >= (0.75 if diameter > 2 else 0.6) and around >= 0.97
 
 
+@pytest.mark.parametrize("rule", ["best", "threshold"])
+@pytest.mark.parametrize("texture", ["brick", "shingle"])
+def test_walls_that_are_never_cut_are_not_drawn_around_a_small_thing(texture, rule):
+    for diameter in (3, 6):
+        drawn = blast(disc(diameter), SIDE, SIDE, None, find_texture(texture), device_dpi=None, rule=rule)
+        inside, stray = inside_and_stray(drawn, diameter)
+        assert inside >= 0.75 and stray <= 0.1, diameter
+    wall = blast(np.maximum(disc(6), 0.3), SIDE, SIDE, None, find_texture(texture), device_dpi=None, rule=rule)
+    plain = blast(np.full_like(disc(6), 0.3), SIDE, SIDE, None, find_texture(texture), device_dpi=None, rule=rule)
+    assert len(wall) > 0.9 * len(plain)  # on a wall they are
+
+
 @pytest.mark.parametrize("options", [{"swell": 1.0}, {"device_dpi": 600.0}, {"pen_pt": 0.5}])
 def test_a_white_disc_among_swelling_strokes_for_a_printer_and_with_one_pen(options):
     drawn = blast(1 - disc(3), SIDE, SIDE, None, find_texture("form"), **{"device_dpi": None, **options})
