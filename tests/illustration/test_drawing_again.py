@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import json
 import os
+import re
+import subprocess
+import sys
 
 import click
 import numpy as np
@@ -15,6 +18,7 @@ from penink_cli.chain.kept import Kept
 from penink_cli.ground.errors import PeninkError
 from penink_cli.main import penink as command
 from penink_cli.options import watching
+from tests.conftest import environment
 
 SQUARE = '<svg xmlns="http://www.w3.org/2000/svg" width="80" height="60"><line x1="{0}" y1="3" x2="40" y2="50"/></svg>'
 
@@ -176,6 +180,26 @@ def test_many_photos_are_drawn_as_one_by_one(penink, tmp_path):
         alone = penink("draw", "--width", "1in", "-o", tmp_path / "alone.svg", f"p{k}.png", cwd=tmp_path)
         assert alone.returncode == 0
         assert (drawn / f"p{k}.svg").read_bytes() == (tmp_path / "alone.svg").read_bytes()
+
+
+def test_one_bar_goes_over_all_photos_and_what_failed_is_named_after_it(tmp_path):
+    for k in range(3):
+        photograph(tmp_path / f"p{k}.png", 10 + 4 * k)
+    (tmp_path / "p1.png").write_bytes(b"no photo")
+    ours, theirs = os.openpty()
+    words = ["draw", "--width", "1in", "--out-dir", "d", "p0.png", "p1.png", "p2.png"]
+    command = [sys.executable, "-m", "penink_cli", *words]
+    done = subprocess.run(
+        command, cwd=tmp_path, env=environment(TERM="xterm"), stdin=subprocess.DEVNULL, stderr=theirs, check=False
+    )
+    os.close(theirs)
+    seen = os.read(ours, 100_000).decode()
+    os.close(ours)
+    bar, _, line = re.sub("\x1b\\[[^A-Za-z]*[A-Za-z]", "", seen).partition("100%")
+    shares = [int(share) for share in re.findall("([0-9]+)%", bar)]
+    assert done.returncode == 1 and shares == sorted(shares) and {33, 66} <= set(shares)
+    assert "1 of 3 photos could not be drawn: p1.png: " in line
+    assert sorted(path.name for path in (tmp_path / "d").iterdir()) == ["p0.ps", "p2.ps"]
 
 
 def test_no_photo_is_drawn_over(penink, tmp_path):
