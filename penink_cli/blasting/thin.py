@@ -3,7 +3,7 @@
 Hatching samples the tone at its spacing, and what is thinner than two spacings (a wire, a whisker, the leg of a
 tripod) comes out as a row of stubs, or not at all. Here it is found as a ridge of the tone, its crest followed
 from cell to cell, and drawn along. Light things on dark ground need nothing: there the hatching leaves out what
-it would cover.
+it would cover. This module alone imports the compiled kernel.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from penink_cli.blasting import curves, walls
+from penink_cli.blasting._compiled import thin as _thin
 from penink_cli.blasting.sheet import Cells, Sheet
 from penink_cli.ground.model import Floats, Ints, Strokes
 
@@ -86,46 +87,11 @@ def bilinear(values: Floats, x: Floats, y: Floats) -> Floats:
     return mixed
 
 
-def follow(mask: npt.NDArray[np.bool_], contrast: Floats, nx: Floats, ny: Floats) -> list[list[tuple[int, int]]]:
-    """Lines of crest cells (row, column), the strongest first; each cell is in one line at most."""
-    rows, columns = np.nonzero(mask)
-    order = np.argsort(-contrast[rows, columns], kind="stable")
-    free = {(r, c) for r, c in zip(rows.tolist(), columns.tolist())}
-    lines = []
-    for k in order.tolist():
-        seed = (int(rows[k]), int(columns[k]))
-        if seed not in free:
-            continue
-        free.discard(seed)
-        ends = []
-        for sign in (1.0, -1.0):
-            r, c = seed
-            dx, dy = -sign * float(ny[r, c]), sign * float(nx[r, c])
-            path = []
-            while True:
-                best, next_cell = 0.45, None
-                for dr in (-1, 0, 1):
-                    for dc in (-1, 0, 1):
-                        if (r + dr, c + dc) in free:
-                            ahead = (dc * dx + dr * dy) / (1.4142135623730951 if dr and dc else 1.0)
-                            if ahead > best:
-                                best, next_cell = ahead, (r + dr, c + dc)
-                if next_cell is None:
-                    break
-                # its neighbours across the line are the same crest
-                for other in ((r + round(float(ny[r, c])), c + round(float(nx[r, c]))),
-                              (r - round(float(ny[r, c])), c - round(float(nx[r, c])))):  # fmt: skip
-                    if other != next_cell:
-                        free.discard(other)
-                r, c = next_cell
-                free.discard(next_cell)
-                path.append(next_cell)
-                tx, ty = -float(ny[r, c]), float(nx[r, c])
-                if tx * dx + ty * dy < 0:
-                    tx, ty = -tx, -ty
-                dx, dy = 0.5 * dx + 0.5 * tx, 0.5 * dy + 0.5 * ty
-            ends.append(path)
-        lines.append([*reversed(ends[1]), seed, *ends[0]])
+def follow(mask: npt.NDArray[np.bool_], contrast: Floats, nx: Floats, ny: Floats) -> list[Ints]:
+    """Lines of crest cells (n, 2), row and column, the strongest first; each cell is in one line at most."""
+    cells = np.column_stack(np.nonzero(mask))
+    order = np.argsort(-contrast[mask], kind="stable")
+    lines: list[Ints] = _thin.follow(mask.astype(np.uint8), cells[order], nx, ny)
     return lines
 
 
@@ -156,9 +122,8 @@ def strokes_along(
     parts: list[Floats] = []
     sizes: list[int] = []
     pens: list[float] = []
-    for line in follow(mask, contrast, nx, ny):
-        where = np.array(line)
-        if len(line) * float(cell.min()) < 0.8 * SHORTEST_PT:
+    for where in follow(mask, contrast, nx, ny):
+        if len(where) * float(cell.min()) < 0.8 * SHORTEST_PT:
             continue
         if float(contrast[where[:, 0], where[:, 1]].mean()) < MEAN_CONTRAST:
             continue
