@@ -77,11 +77,10 @@ class StrokeSet(Form):
         room = 1000 + int(4 * total / self._area)
         out, first = np.empty((room * min(self._most, 24) + 256, 2)), np.zeros(room + 1, np.int64)
         which = np.zeros(room, np.int32)
-        field = (np.ascontiguousarray(plane) for plane in self.turned(i))
-        placed = growth.Growth(
-            wanted, wanted.copy(), *field, cell, self._lines_of.points, self._lines_of.first,
-            self._pens + MEAN * sheet.gain_pt, np.zeros_like(sheet.bits), SPREAD, SCALES[1], seed + 1,
-        ).place(self._stop, math.radians(TURN), *SCALES, TRIES, out, first, which)  # fmt: skip
+        field = tuple(np.ascontiguousarray(plane) for plane in self.turned(i))
+        painted = self._pens + MEAN * sheet.gain_pt
+        growing = growth.Growth(wanted, field, cell, self._lines_of, painted, SPREAD, SCALES[1], seed + 1)
+        placed = growing.place(self._stop, math.radians(TURN), *SCALES, TRIES, out, first, which)
         first = first[: placed + 1]
         points, starts = smooth(out, first)
         middle = out[(first[:-1] + first[1:]) // 2] if placed else np.zeros((0, 2))

@@ -29,19 +29,18 @@ cdef double STRAIGHT_ON = 0.8  # the field breaks where it turns by more than th
 
 
 cdef class Growth:
-    """A sheet, what it lacks, and the examples.
+    """A bare sheet, what it lacks, and the examples.
 
-    tone, left: (rows, columns) what is wanted and what of it is lacking, float32. cos2, sin2: (rows, columns) of twice
-    the angle of the field. cell: width and height of a cell, points. points, first: the examples, polylines along x
-    from 0, points; widths: (n,) what a device paints of them. spread: a stroke's ink counts within so many times the
-    square root of its area over the tone. bits: ink that is there, as in `ink`. largest: the most that an example is
-    scaled.
+    tone: (rows, columns) what is wanted, float32. field: cosine and sine (rows, columns) of twice the angle. cell:
+    width and height of a cell, points. examples: `curves.Polylines` along x from 0, points; widths: (n,) what a device
+    paints of them. spread: a stroke's ink counts within so many times the square root of its area over the tone.
+    largest: the most that an example is scaled.
     """
 
     cdef const float[:, ::1] tone
     cdef const float[:, ::1] cos2
     cdef const float[:, ::1] sin2
-    cdef float[:, ::1] left
+    cdef float[:, ::1] left  # (rows, columns) what of the tone is lacking
     cdef float[:, ::1] shy
     cdef float[::1] top
     cdef Py_ssize_t begin[LEVELS]
@@ -51,7 +50,7 @@ cdef class Growth:
     cdef const double[:, ::1] points
     cdef const long long[::1] first
     cdef const double[::1] widths
-    cdef unsigned long long[:, :, ::1] bits
+    cdef unsigned long long[:, :, ::1] bits  # ink, as in `ink`
     cdef double sx, sy, dx, dy, area, spread
     cdef int steps
     cdef unsigned long long state
@@ -59,11 +58,15 @@ cdef class Growth:
     cdef double[:, ::1] kept
     cdef double[:, :, ::1] way
 
-    def __init__(self, tone, left, cos2, sin2, cell, points, first, widths, bits, spread, largest, seed):
-        self.tone, self.left, self.cos2, self.sin2 = tone, left, cos2, sin2
+    def __init__(self, tone, field, cell, examples, widths, double spread, double largest, seed):
+        points, first = examples.points, examples.first
+        left = tone.copy()
+        self.tone, self.left = tone, left
+        self.cos2, self.sin2 = field
         self.dx, self.dy = cell
         self.points, self.first, self.widths = points, first, widths
-        self.bits, self.spread = bits, spread
+        self.bits = np.zeros((tone.shape[0], (tone.shape[1] + 7) // 8, 8), np.uint64)
+        self.spread = spread
         self.sx, self.sy = 8 / self.dx, 8 / self.dy
         # what the turn may add to it, and one more for what lies between two steps
         reach = np.abs(np.asarray(points)[:, 0]).max(initial=0.0) * largest * 1.1 + 3
