@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -49,20 +50,29 @@ def sharpen(points: EdgePoints, chains: Chains, blur: float, error: Floats) -> S
     place = np.arange(len(p)) - first
     is_corner, left_out = np.zeros(len(p), bool), np.zeros(len(p), bool)
     blunt, tip = round(1.5 * blur) + 1, round(3 * blur) + 1
-    tries = [(blunt, stretch, _LEAST_TURN, 1.6 * blur) for stretch in _STRETCHES]
-    tries += [(tip, stretch, _LEAST_TIP_TURN, float(tip)) for stretch in _TIP_STRETCHES]
-    for skip, stretch, least_turn, most_shift in tries:
-        far = skip + stretch
+    tries = [_Corner(blunt, stretch, _LEAST_TURN, 1.6 * blur) for stretch in _STRETCHES]
+    tries += [_Corner(tip, stretch, _LEAST_TIP_TURN, float(tip)) for stretch in _TIP_STRETCHES]
+    for wanted in tries:
+        far = wanted.skip + wanted.stretch
         at = np.flatnonzero((length > 2 * far) & (ring | ((place >= far) & (place < length - far))))
-        for k, corner, span in _corners(
-            p, unsure[at], first[at], place[at], length[at], at, skip, stretch, least_turn, most_shift, points.shape
-        ):
+        for k, corner, span in _corners(p, unsure[at], first[at], place[at], length[at], at, wanted, points.shape):
             if (left_out[span] | is_corner[span]).any():
                 continue
             left_out[span] = True
             left_out[k], is_corner[k] = False, True
             position[chains.order[k]] = corner
     return _cut(position, chains, is_corner, left_out)
+
+
+class _Corner(NamedTuple):
+    """What a corner is: between two stretches of so many points that begin `skip` points from it, a turn (radians)
+    of at least so much, no more than so far (pixels) from the chain.
+    """
+
+    skip: int
+    stretch: int
+    least_turn: float
+    most_shift: float
 
 
 def _corners(
@@ -72,14 +82,16 @@ def _corners(
     place: npt.NDArray[np.intp],
     length: npt.NDArray[np.intp],
     at: npt.NDArray[np.intp],
-    skip: int,
-    stretch: int,
-    least_turn: float,
-    most_shift: float,
+    wanted: _Corner,
     shape: tuple[int, int],
 ) -> Iterator[tuple[int, Floats, npt.NDArray[np.intp]]]:
-    """Each corner's chain entry, x and y, and the entries it stands for; those amid their bends first."""
+    """Each corner's chain entry, x and y, and the entries it stands for; those amid their bends first.
 
+    p: (e, 2) places of all chain entries. at: (k,) entries that may be corners; of each the `unsure` place's standard
+    deviation, the first entry of its chain, its place in that, and the chain's length.
+    shape: height and width of the picture, within which corners lie.
+    """
+    skip, stretch, least_turn, most_shift = wanted
     t = np.arange(stretch) - (stretch - 1) / 2
     square = t * t - (t * t).mean()
     weights = np.stack([t / (t * t).sum(), square / (square * square).sum()])
