@@ -75,12 +75,13 @@ RENDERED = (
     "tests/test_make.py::test_nothing_in_a_name_is_run", "tests/outputs/test_inks.py",
     "tests/blasting/test_engraving.py", "tests/blasting/test_form.py", "tests/blasting/test_rules.py",
     "tests/blasting/test_stroke_set.py", "tests/blasting/test_pressure.py", "tests/blasting/test_restoring.py",
+    "tests/blasting/test_reserved.py::test_the_tone_of_the_dark_",
     "tests/illustration/test_layering.py::test_what_is_left_over_",
 )  # fmt: skip
 SLOW = (
     "tests/faults/test_degenerate.py", "tests/faults/test_environment.py", "tests/faults/test_signals.py",
     "tests/faults/test_shortage.py", "tests/faults/test_outputs.py", "tests/formats/test_found.py",
-    "tests/test_make.py",
+    "tests/test_make.py", "tests/test_schedules.py", "tests/blasting/test_balancing.py::test_the_filter_writes_one_",
     "tests/test_readme.py::test_every_block", "tests/test_registries.py",
     "tests/outputs/test_manual.py::test_examples_run", "tests/textures/", "tests/directions/test_detection.py",
     "tests/composition/test_separation.py::test_draw_in_inks_",

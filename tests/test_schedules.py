@@ -67,7 +67,6 @@ def busy(width: int, height: int) -> np.ndarray[Any, Any]:
     return np.clip(255 * (small + rng.normal(0, 0.01, small.shape)), 0, 255).astype(np.uint8)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     "options",
     [

@@ -3,7 +3,7 @@
 Near pixels tell it, and where noise hides it from them, farther ones and the neighbours along the line: each only as
 far as the picture itself shows that they tell of the same step. Flat pictures are averaged widely, photographs hardly
 (`_farther`, `_change`). On 20 rendered scenes 1.3 to 2.0 of a hundred edges are off by more than .02 of grey; with four
-levels of noise and 1.5 pixels of blur it was 12. Another draw of the noise moves at most .8 of a hundred. The rest is in
+levels of noise and 1.5 pixels of blur it was 12. Another draw of the noise moves at most .8. The rest is in
 the edges: of their places a scene without noise and blur tells no better, as near junctions they lie up to a pixel off
 (`python -m tests.benchmarks.edges strengths noisy`).
 """

@@ -206,7 +206,6 @@ def put(tmp_path, plates) -> list[str]:
     return [*words, *(f"{i}.jsonl" for i in range(len(plates)))]
 
 
-@pytest.mark.slow
 def test_the_filter_writes_one_plate(tmp_path, penink, plates):
     words = put(tmp_path, plates)
     done = penink("balance", "--plate", "2", *words, "-o", "b.jsonl", cwd=tmp_path)
