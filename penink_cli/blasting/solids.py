@@ -25,7 +25,7 @@ BLACK, DARKEST = 0.93, 0.97
 #: Black with white lines in it is so wide somewhere, and has an outline: along OUTLINED of its border the tone falls
 #: below OUTSIDE within OUTLINE_PT. Where it ended in a smooth tone its border would be that of nothing in the picture.
 #: Amid it there is no hatching of less than HOLE_PT2 square points that is dark all over.
-ROOM_PT, OUTLINED, OUTSIDE, OUTLINE_PT, HOLE_PT2 = 6.0, 0.5, 0.7, 4.0, 200.0
+ROOM_PT, OUTLINED, OUTSIDE, OUTLINE_PT, HOLE_PT2 = 6.0, 0.7, 0.7, 4.0, 200.0
 #: How far black is filled around small light things.
 BESIDE_PT = 3.0
 #: Whether it is black is told by the tone under a Gaussian of σ SMOOTH_PT. Where the tone falls below LIGHT within
