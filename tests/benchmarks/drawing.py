@@ -22,10 +22,11 @@ from PIL import Image
 from scipy.ndimage import gaussian_filter
 
 from penink_cli.blasting.blast import left_over
-from penink_cli.blasting.sheet import coverage
+from penink_cli.blasting.reserved import LEAST
+from penink_cli.blasting.sheet import coverage, resample
 from penink_cli.blasting.telling import told
 from penink_cli.formats import lines, strokes
-from penink_cli.ground.device import widened
+from penink_cli.ground.device import MEAN, widened
 from penink_cli.ground.model import GreyImage
 from penink_cli.measuring.tone import figures, printed
 from penink_cli.measuring.tone import wanted as as_wanted
@@ -34,6 +35,7 @@ from penink_cli.outputs import pdf, postscript, svg
 from penink_cli.outputs.page import lay_out
 from penink_cli.travel.order import ordered_each
 from samples.photographs import NAMES
+from tests.blasting.measures import solids
 
 INCHES, DPI = 6, 150
 FINE, COARSE, AROUND, EYE = 2.0, 8.0, 16.0, DPI / 32  # pixels
@@ -89,7 +91,7 @@ def tone(folder, names=NAMES):
     """RMS and bias of tone against the composed grey, as the eye sees both: the hatching alone, and all there is.
 
     The eye is a Gaussian of 1/16 inch, as `penink measure` has it; RMS again of an eye that does not see across strong
-    steps of tone, which forgives nothing beside an edge. Of the hatching alone what is filled solid is not asked for.
+    steps of tone, which forgives nothing beside an edge. Of the hatching alone no white is asked for where black is left without white lines.
     """
     print("\n| picture | house, hatching alone: RMS, bias % (RMS on its side of edges) | house, all | true, all |")
     print("| --- | --- | --- | --- |")
@@ -107,6 +109,11 @@ def tone(folder, names=NAMES):
             if style == "house" and not options:
                 with open(found, "rb") as stream:
                     wanted, _ = told(wanted, drawn.width, drawn.height, lines.read(stream, "l.json"), None, 1)
+            if style == "house" and options:
+                nothing, gain = np.zeros((1, 1), np.float32), MEAN * 72 / PRINTER_DPI
+                black = solids(wanted, drawn.width, drawn.height, None, gain, nothing, 1 - LEAST)
+                filled = coverage(black, round(4 * drawn.height), round(4 * drawn.width)).astype(float)
+                wanted = np.maximum(wanted, resample(filled, *wanted.shape))
             have = printed([widened(drawn, PRINTER_DPI)], 10**9, 1)
             grey = GreyImage.from_grey(1 - wanted, 65535)
             seen_by_all = figures(as_wanted(grey, have.shape[1], have.shape[0]), have)
