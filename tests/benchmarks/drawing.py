@@ -91,7 +91,8 @@ def tone(folder, names=NAMES):
     """RMS and bias of tone against the composed grey, as the eye sees both: the hatching alone, and all there is.
 
     The eye is a Gaussian of 1/16 inch, as `penink measure` has it; RMS again of an eye that does not see across strong
-    steps of tone, which forgives nothing beside an edge. Of the hatching alone no white is asked for where black is left without white lines.
+    steps of tone, which forgives nothing beside an edge. Of the hatching alone no white is asked for where black has
+    no white lines.
     """
     print("\n| picture | house, hatching alone: RMS, bias % (RMS on its side of edges) | house, all | true, all |")
     print("| --- | --- | --- | --- |")
