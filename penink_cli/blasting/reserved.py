@@ -17,17 +17,20 @@ from penink_cli.blasting.form import Form
 from penink_cli.blasting.gaps import Gaps
 from penink_cli.blasting.sheet import CELL_PT, Cells, Sheet, look_up, resample
 from penink_cli.composition.filters import Picture, blurred
+from penink_cli.ground.masks import labelled, sizes
 from penink_cli.ground.model import EdgeList, HatchLayer, Strokes
 
 #: The tone from which on the dark is black with white lines in it.
-FROM = 0.85
+FROM = 0.78
 #: Width of a white line, points.
 LINE_PT = 0.3
 #: Of the tone the mean around counts (σ): what is finer than the lines' distance they cannot show.
 AROUND_PT = 2.0
 #: The least white for which there are lines: farther apart they are scratches, and black as a whole is near enough. The
 #: most that there may be: closer lines would leave no black between.
-LEAST, MOST = 0.035, 0.22
+LEAST, MOST = 0.035, 0.36
+#: Where there is less of that in one piece, square points, there would be a line or two, which are scratches too.
+ALONE_PT2 = 400.0
 #: Lines are told by places so far apart, points; they end in points over TAPER_PT, and shorter ones are left out.
 STEP_PT, TAPER_PT, SHORTEST_PT = 1.0, 5.0, 12.0
 #: Rounds in which their widths are corrected, how much of what is wrong each round corrects, and the greatest width.
@@ -46,7 +49,10 @@ def white_lines(
     within: Picture = resample((value > marks.LEVEL).astype(np.float64), sheet.rows, sheet.columns).astype(np.float32)
     white = blurred((1 - sheet.tone) * within, AROUND_PT / CELL_PT)
     white /= np.maximum(blurred(within, AROUND_PT / CELL_PT), np.float32(1e-3))
-    white = np.where(white > LEAST, np.minimum(white, np.float32(MOST)), np.float32(0))
+    part, boxes = labelled(white > LEAST)
+    large = sizes(part, len(boxes), part > 0) >= ALONE_PT2 / CELL_PT**2
+    large[0] = False
+    white = np.where(large[part], np.minimum(white, np.float32(MOST)), np.float32(0))
     room = np.where(within > 0.99, white, np.float32(0))
     if not (room > 0).any():
         return None

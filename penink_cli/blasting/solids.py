@@ -22,10 +22,13 @@ from penink_cli.ground.model import Floats, Strokes
 
 #: The tone from which on it is black where a texture ends in black, and where one can be as dark as DARKEST itself.
 BLACK, DARKEST = 0.93, 0.97
-#: Black with white lines in it is so wide somewhere, and has an outline: along OUTLINED of its border the tone falls
-#: below OUTSIDE within OUTLINE_PT. Where it ended in a smooth tone its border would be that of nothing in the picture.
-#: Amid it there is no hatching of less than HOLE_PT2 square points that is dark all over.
-ROOM_PT, OUTLINED, OUTSIDE, OUTLINE_PT, HOLE_PT2 = 6.0, 0.7, 0.7, 4.0, 200.0
+#: Black with white lines in it is a thing of its own: it is so wide somewhere, of BROAD_PT2 square points or more, and
+#: along OUTLINED of its border the tone falls by FALL within OUTLINE_PT. Where it ended in a smooth tone its border
+#: would be that of nothing in the picture. What of it is less dark, down to the tone THING, is drawn the same way if
+#: MOSTLY is its dark part, and so is hatching of less than HOLE_PT2 amid it. Its border is that of the tone under a
+#: Gaussian of σ CALM_PT.
+ROOM_PT, BROAD_PT2, OUTLINED, FALL, OUTLINE_PT = 14.0, 2000.0, 0.85, 0.2, 4.0
+THING, MOSTLY, HOLE_PT2, CALM_PT = 0.65, 0.6, 1500.0, 1.5
 #: How far black is filled around small light things.
 BESIDE_PT = 3.0
 #: Whether it is black is told by the tone under a Gaussian of σ SMOOTH_PT. Where the tone falls below LIGHT within
@@ -170,17 +173,22 @@ def _begins(smooth: Picture, black: float, broad: float, px: float) -> Picture:
 
     smooth: (h, w) the tone. px: pixels in a point.
     """
-    mask = _opened(smooth > np.float32(broad), ROOM_PT / 2 * px)
-    part, boxes = labelled(mask)
-    border = mask & near(mask, 1.0)
-    outline = border & near(smooth >= OUTSIDE, OUTLINE_PT * px)
-    length, told = (sizes(part, len(boxes), some) for some in (border, outline))
-    there = (told >= OUTLINED * length)[part] & mask
+    calm = blurred(smooth, CALM_PT * px, 1)
+    begins = np.full(smooth.shape, black, np.float32)
+    for least, share in ((broad, 0.0), (THING, MOSTLY)):
+        part, boxes = labelled(_opened(calm > np.float32(least), ROOM_PT / 2 * px))
+        area, dark = (sizes(part, len(boxes), some) for some in (part > 0, calm > np.float32(broad)))
+        border = (part > 0) & near(part > 0, 1.0)
+        outline = border & near(smooth >= np.float32(least - FALL), OUTLINE_PT * px)
+        length, told = (sizes(part, len(boxes), some) for some in (border, outline))
+        chosen = (area >= BROAD_PT2 * px * px) & (told >= OUTLINED * length) & (dark >= share * area)
+        chosen[0] = False
+        begins[chosen[part]] = least
     # and what little hatching there would be amid it
-    hole, boxes = labelled(~there)
-    size, light = (sizes(hole, len(boxes), some) for some in (~there, smooth < AROUND))
-    amid = ((size < HOLE_PT2 * px * px) & (light == 0))[hole] & ~there
-    return np.where(there, np.float32(broad), np.where(amid, np.float32(AROUND), np.float32(black)))
+    hole, boxes = labelled(begins == np.float32(black))
+    size, light = (sizes(hole, len(boxes), some) for some in (hole > 0, calm < THING))
+    begins[((size < HOLE_PT2 * px * px) & (light == 0))[hole] & (hole > 0)] = THING
+    return begins
 
 
 def _blots(tone: Picture, core: marks.Mask, deep: marks.Mask, black: Picture | np.float32, px: float) -> marks.Mask:
