@@ -28,9 +28,9 @@ LINE_PT = 0.3
 AROUND_PT = 2.0
 #: The least white for which there are lines: farther apart they are scratches, and black as a whole is near enough. The
 #: most that there may be: closer lines would leave no black between.
-LEAST, MOST = 0.035, 0.36
+LEAST, MOST = 0.028, 0.36
 #: Where there is less of that in one piece, square points, there would be a line or two, which are scratches too.
-ALONE_PT2 = 400.0
+ALONE_PT2 = 250.0
 #: Lines are told by places so far apart, points; they end in points over TAPER_PT, and shorter ones are left out.
 STEP_PT, TAPER_PT, SHORTEST_PT = 1.0, 5.0, 12.0
 #: Rounds in which their widths are corrected, how much of what is wrong each round corrects, and the greatest width.

@@ -21,7 +21,7 @@ from penink_cli.ground.masks import labelled, near, sizes
 from penink_cli.ground.model import Floats, Strokes
 
 #: The tone from which on it is black where a texture ends in black, and where one can be as dark as DARKEST itself.
-BLACK, DARKEST = 0.93, 0.97
+BLACK, DARKEST = 0.94, 0.97
 #: Black with white lines in it is a thing of its own: it is so wide somewhere, of BROAD_PT2 square points or more, and
 #: along OUTLINED of its border the tone falls by FALL within OUTLINE_PT. Where it ended in a smooth tone its border
 #: would be that of nothing in the picture. What of it is less dark, down to the tone THING, is drawn the same way if
