@@ -23,7 +23,7 @@ from penink_cli.ground.model import EdgeList, HatchLayer, Strokes
 #: The tone from which on the dark is black with white lines in it.
 FROM = 0.78
 #: Width of a white line, points.
-LINE_PT = 0.3
+LINE_PT = 0.35
 #: Of the tone the mean around counts (σ): what is finer than the lines' distance they cannot show.
 AROUND_PT = 2.0
 #: The least white for which there are lines: farther apart they are scratches, and black as a whole is near enough. The
@@ -34,7 +34,7 @@ ALONE_PT2 = 250.0
 #: Lines are told by places so far apart, points; they end in points over TAPER_PT, and shorter ones are left out.
 STEP_PT, TAPER_PT, SHORTEST_PT = 1.0, 5.0, 12.0
 #: Rounds in which their widths are corrected, how much of what is wrong each round corrects, and the greatest width.
-ROUNDS, CORRECTION, WIDEST_PT = 4, 0.8, 0.6
+ROUNDS, CORRECTION, WIDEST_PT = 10, 1.0, 0.7
 
 
 def white_lines(
