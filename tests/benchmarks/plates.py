@@ -8,7 +8,8 @@ alike, and the plates' own amounts, which neither can surpass but by chance. Whe
 photograph these come within .2 of it, which dots do not: of three inks error diffusion is printed too (Floyd and
 Steinberg), dots of the size of the finest pen, and of half that. What is off of the latter is the floor that plates of
 strokes are held against besides: on coffee and chelsea they are below it (.79 and .66 of it, 1.56 and 1.54 of the
-amounts; forty rounds of pressing, by up to .6 of a width, end at 1.45 and 1.41).
+amounts; forty rounds of pressing, by up to .6 of a width, end at 1.45 and 1.41; one pen of .45 pt at 1.84 and 1.61, of
+.3 pt at 2.05 and 1.57; plates of dots at 2.24 and 1.34 on coffee and rocket, of engraved lines at 2.47 and 2.22).
 
 lightness: the mean of L* less the photograph's. moiré: how much of the contrast of the overprint, beyond what is in the
 photograph, lies in periods of 1/10 to 1/3 in, in L*.

@@ -76,6 +76,27 @@ def test_a_dark_without_an_outline_is_hatched() -> None:
     assert (strokes.widths == PEN_PT).mean() > 0.5
 
 
+def test_a_lighter_part_of_a_dark_thing_is_drawn_as_the_rest() -> None:
+    """A coat with a fold of .7, which is a third of it: lines in the black, not a net of crossed ones beside it."""
+    x = np.linspace(-1, 1, 432)[None]
+    fold = gaussian_filter(np.where(np.abs(x) < 0.3, 0.7, 0.92) * np.ones((432, 1)), 20)
+    tone = np.where(coat(1.0) == 1, fold, 0.2)
+    strokes = blast(tone, SIDE, SIDE, None, find_texture("form"), directions=field(waves))
+    bare = whites(strokes)[:, 1360:2096]
+    parts = label(bare, np.ones((3, 3)))[0]
+    sizes = np.bincount(parts.ravel())[1:]
+    assert sizes[sizes > 16 * 12 * 4].sum() > 0.9 * sizes.sum()  # of lines of over 12 pt, where a net leaves flecks
+
+
+@pytest.mark.parametrize("tone", [0.85, 0.92])
+def test_narrow_things_are_hatched(tone) -> None:
+    """An eyelid, a cat's nose: white lines across a narrow thing would be the stripes of a zebra."""
+    x, y = np.arange(432), np.arange(432)[:, None]
+    wanted = np.where(np.abs(y - 200 - 20 * np.sin(x / 60)) < 12, tone, 0.2)
+    strokes = blast(wanted, SIDE, SIDE, None, find_texture("form"), directions=field(waves))
+    assert (strokes.widths == PEN_PT).mean() < 0.1
+
+
 def test_nothing_leaves_the_frame(drawn) -> None:
     for i, width in enumerate(drawn.widths.tolist()):
         line = measures.flattened(drawn, i)
