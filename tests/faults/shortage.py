@@ -59,8 +59,9 @@ def main() -> None:
             status, messages, _, total = run(command, kernel, 0)
             assert (status, messages) == (0, ""), (command, status, messages)
             for n in some(total):
-                status, messages, left, _ = run(command, kernel, n)
-                found.append([command[0], kernel, n, total, status, messages, left])
+                status, messages, left, seen = run(command, kernel, n)
+                if seen >= n:  # two threads need less room one time than another: so many may not be asked for
+                    found.append([command[0], kernel, n, total, status, messages, left])
     Path("found.json").write_text(json.dumps(found))
 
 
