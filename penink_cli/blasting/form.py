@@ -330,16 +330,16 @@ def _pressed(coverage: Plane, finest: float, pen: float) -> Plane:
 def _carried_on(density: Plane, cover: Plane, sigma: float) -> Plane:
     """Densities, and where next to nothing is covered those of the surroundings (σ in nodes)."""
     known = density * np.minimum(cover * np.float32(1 / FAINT), 1)
-    weight = blurred(known, sigma)
+    weight = box_blurred(known, sigma)
     around = np.maximum(
-        blurred(known * density, sigma) / np.maximum(weight, np.float32(1e-6)), np.float32(SPARSEST)
+        box_blurred(known * density, sigma) / np.maximum(weight, np.float32(1e-6)), np.float32(SPARSEST)
     )  # fmt: skip
     t = np.clip((cover - np.float32(FAINT / 4)) * np.float32(4 / (3 * FAINT)), 0, 1)
     t = t * t * (3 - 2 * t)
     return np.where(density > around, density, density * t + around * (1 - t)).astype(np.float32)
 
 
-def blurred(values: Plane, sigma: float) -> Plane:
+def box_blurred(values: Plane, sigma: float) -> Plane:
     """Values (rows, columns) blurred by about a Gaussian: means over boxes, three times, of means of 4 × 4 cells."""
     rows, columns = values.shape
     padded = np.pad(values, ((0, -rows % 4), (0, -columns % 4)), mode="edge")

@@ -20,8 +20,6 @@ from penink_cli.composition.filters import Picture, blurred
 from penink_cli.ground.masks import labelled, sizes
 from penink_cli.ground.model import EdgeList, HatchLayer, Strokes
 
-#: The tone from which on the dark is black with white lines in it.
-FROM = 0.78
 #: Width of a white line, points.
 LINE_PT = 0.35
 #: Of the tone the mean around counts (σ): what is finer than the lines' distance they cannot show.

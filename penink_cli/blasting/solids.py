@@ -22,11 +22,12 @@ from penink_cli.ground.model import Floats, Strokes
 
 #: The tone from which on it is black where a texture ends in black, and where one can be as dark as DARKEST itself.
 BLACK, DARKEST = 0.94, 0.97
-#: Black with white lines in it is a thing of its own: it is so wide somewhere, of BROAD_PT2 square points or more, and
-#: along OUTLINED of its border the tone falls by FALL within OUTLINE_PT. Where it ended in a smooth tone its border
-#: would be that of nothing in the picture. What of it is less dark, down to the tone THING, is drawn the same way if
-#: MOSTLY is its dark part, and so is hatching of less than HOLE_PT2 amid it. Its border is that of the tone under a
-#: Gaussian of σ CALM_PT.
+#: The tone from which on the dark is black with white lines in it, where it is a thing of its own.
+LINED = 0.78
+#: A thing is so wide somewhere, of BROAD_PT2 square points or more, and along OUTLINED of its border the tone falls by
+#: FALL within OUTLINE_PT: where it ended in a smooth tone its border would be that of nothing in the picture. What of
+#: it is less dark, down to the tone THING, is drawn the same way if MOSTLY is its dark part, and so is hatching of less
+#: than HOLE_PT2 amid it. Its border is that of the tone under a Gaussian of σ CALM_PT.
 ROOM_PT, BROAD_PT2, OUTLINED, FALL, OUTLINE_PT = 14.0, 2000.0, 0.85, 0.2, 4.0
 THING, MOSTLY, HOLE_PT2, CALM_PT = 0.65, 0.6, 1500.0, 1.5
 #: How far black is filled around small light things.

@@ -9,7 +9,7 @@ is cut into strokes of a hand's length, whose ends keep clear of the ends on the
 every stroke is moved to the middle between its neighbours, a few times over. At last the hand's
 own variation is added.
 
-This module alone imports the compiled kernel `sweep`.
+This module alone imports the compiled kernels `integral` and `sweep`.
 """
 
 from __future__ import annotations
@@ -21,6 +21,7 @@ import numpy as np
 import numpy.typing as npt
 
 from penink_cli.blasting import curves
+from penink_cli.blasting._compiled import integral as _integral
 from penink_cli.blasting._compiled import sweep as _sweep
 from penink_cli.blasting.sheet import Sheet
 from penink_cli.ground.angles import direction
@@ -132,10 +133,10 @@ def hatch(
     u, v = u0 + (np.arange(columns) + 0.5) * COLUMN_PT, v0 + (np.arange(rows - 1) + 0.5) * ROW_PT
     wander = wandering(layer, seed)
     most = 1.0 / layer.spacing_pt if layer.spacing_pt > 0 else np.inf
-    pen, coverage = _sweep.Pressed(finest_pt, pen_pt, 1.0 / LIGHT, gained, most), np.ascontiguousarray(coverage)
+    pen, coverage = _integral.Pressed(finest_pt, pen_pt, 1.0 / LIGHT, gained, most), np.ascontiguousarray(coverage)
     for some in (slice(k, k + 64) for k in range(0, columns, 64)):
         aside = wander(u[some, None], v[None, :]) if layer.wave_pt > 0 else np.empty((0, 0))
-        _sweep.integrate(
+        _integral.integrate(
             coverage, sheet.width, sheet.height, PAD_PT, c, s, u[some], v, aside, pen, ROW_PT, phase[some]
         )
 

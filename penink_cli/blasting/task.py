@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from penink_cli.blasting import curves, hatching, marks, reserved, solids
+from penink_cli.blasting import curves, hatching, marks, solids
 from penink_cli.blasting.light import LightThings
 from penink_cli.blasting.sheet import Cells, Sheet, coverage, resample
 from penink_cli.ground.angles import direction
@@ -95,12 +95,14 @@ class Begun:
         dark = layers[-1] if layers and task.texture.engraving is None and layers[-1].spacing_pt == 0 else None
         light = None if self.light.none else self.light
         whole = dark is not None and dark.high >= 1.0 and task.solid is None
-        black, broad = (solids.BLACK, reserved.FROM) if whole else (task.solid or solids.DARKEST, 1.0)
+        black, broad = (solids.BLACK, solids.LINED) if whole else (task.solid or solids.DARKEST, 1.0)
         told = task.tone, *size, sheet.ink, black, light, dark is not None and dark.high >= ALMOST, broad
         value = recalled("black", told, lambda: solids.found(*told))
         gaps = None
         if value is not None and whole:
             assert dark is not None
+            from penink_cli.blasting import reserved  # with what follows a field, which other textures do not load
+
             painted = (task.pen_pt or solids.PEN_PT) + gain
             more = value, self.field, dark, task.edges, painted, task.seed
             gaps = recalled("gaps", (task.tone, *more), lambda: reserved.white_lines(sheet, *more, task.tick))

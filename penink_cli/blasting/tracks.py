@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from penink_cli.blasting import curves, joining, pen_lines, polylines, rims, walls
-from penink_cli.blasting.form import PAD, blurred, normal
+from penink_cli.blasting.form import PAD, box_blurred, normal
 from penink_cli.blasting.level_lines import LevelLines, level_lines
 from penink_cli.blasting.phase import Field, Nodes, Plane, solve
 from penink_cli.blasting.sheet import Cells, Sheet, look_up
@@ -181,7 +181,7 @@ def _known(nodes: Nodes, engraving: Engraving, spacing: float, sheet: Sheet, see
         gx, gy = np.full(shape, -s), np.full(shape, c)
     if engraving.waver:
         noise = np.random.default_rng([seed, 22]).uniform(-1, 1, shape).astype(np.float32)
-        noise = blurred(noise, WAVER_LENGTH_PT / nodes.dx)
+        noise = box_blurred(noise, WAVER_LENGTH_PT / nodes.dx)
         noise = noise / max(float(np.abs(noise).max()), 1e-6) * np.float32(engraving.waver * WAVER_PT)
         height = height + noise
         gy, gx = gy + _slope(noise, 0) / nodes.dy, gx + _slope(noise, 1) / nodes.dx

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 
@@ -39,3 +42,18 @@ def test_a_rule_says_which_textures_it_lays_along_a_field(name):
 def test_no_other_rule():
     with pytest.raises(ParameterError, match="known are best, strict"):
         rule("fair")
+
+
+@pytest.mark.parametrize(("texture", "loaded"), [("crosshatch", []), ("form", ["form", "reserved"]), ("fur", ["form"])])
+def test_what_a_texture_does_not_use_is_not_loaded(texture, loaded):
+    """A dark square on white, in a process of its own."""
+    script = (
+        "import sys, numpy as np\n"
+        "from penink_cli.blasting.blast import blast\n"
+        "from penink_cli.options.textures import find_texture\n"
+        "tone = np.zeros((60, 60)); tone[10:50, 10:50] = 0.96\n"
+        f"blast(tone, 150, 150, None, find_texture({texture!r}))\n"
+        "print(*(n for n in ('form', 'reserved', 'engraving') if f'penink_cli.blasting.{n}' in sys.modules))"
+    )
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    assert done.stdout.split() == loaded
