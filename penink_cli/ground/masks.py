@@ -10,12 +10,14 @@ import math
 import numpy as np
 import numpy.typing as npt
 
+from penink_cli.ground import threads as threading
 from penink_cli.ground._compiled import masks as _masks
 from penink_cli.ground.model import Floats, Ints
 
 Mask = npt.NDArray[np.bool_]
 
-_FEW = 20.0  # pixels: as far it is faster to look at all there are than for the nearest
+_FEW = 60.0  # pixels: as far it is faster to look at all there are than for the nearest
+_BAND = 64  # rows of a task, whose numbers a processor's cache holds
 
 
 def labelled(mask: Mask) -> tuple[npt.NDArray[np.int32], npt.NDArray[np.int32]]:
@@ -56,7 +58,7 @@ def distance(mask: Mask) -> Floats:
     return out
 
 
-def near(mask: Mask, reach: float, strictly: bool = False) -> Mask:
+def near(mask: Mask, reach: float, strictly: bool = False, threads: int = 1) -> Mask:
     """Which pixels (h, w) are no further than `reach` from one outside the mask, `strictly`: nearer; those outside are.
 
     The same as `distance(mask) <= reach`, in a fraction of the time where that is a few pixels.
@@ -70,9 +72,17 @@ def near(mask: Mask, reach: float, strictly: bool = False) -> Mask:
     most = int(reach * reach) + 2  # of the squares of distances, which are whole
     while most >= 0 and not (math.sqrt(most) < reach or (math.sqrt(most) == reach and not strictly)):
         most -= 1
-    out = np.zeros(mask.shape, np.bool_)
-    if most >= 0:
-        _masks.within(_octets(mask), math.isqrt(most), most, out.view(np.uint8))
+    if most < 0:
+        return np.zeros(mask.shape, np.bool_)
+    around, octets = math.isqrt(most), _octets(mask)
+    out = np.empty(mask.shape, np.bool_)
+
+    def band(top: int, bottom: int) -> None:
+        down = np.empty((bottom - top + 2 * around, mask.shape[1]), np.uint8)
+        best = np.empty((2, mask.shape[1] + 2 * around), np.int16)
+        _masks.within(octets, around, most, down, best, top, out[top:bottom].view(np.uint8))
+
+    threading.share(threading.ranges(band, len(mask), max(_BAND, 4 * around)), threads)
     return out
 
 

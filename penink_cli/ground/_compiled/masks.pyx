@@ -137,42 +137,68 @@ def distance(const unsigned char[:, ::1] mask, double[:, ::1] out) -> None:
         free(kept)
 
 
-def within(const unsigned char[:, ::1] mask, int reach, int most, unsigned char[:, ::1] out) -> None:
-    """Which pixels (h, w) one outside the mask is so near to that the square of the distance is `most` at the most.
+def within(
+    const unsigned char[:, ::1] mask, int reach, int most, unsigned char[:, ::1] down, short[:, ::1] best,
+    Py_ssize_t top, unsigned char[:, ::1] out,
+) -> None:
+    """Of the rows from `top` on, which pixels (rows, w) one outside the mask (h, w) is so near to that the square of the
+    distance is `most` at the most.
 
-    reach: pixels, the root of that rounded down, 1000 at the most.
+    reach: pixels, the root of that rounded down, 100 at the most: what is counted fits into octets, its square into
+    their double, and as many more numbers into a vector. down: (rows + 2 reach, w), best: (2, w + 2 reach), room.
     """
-    cdef Py_ssize_t h = mask.shape[0], w = mask.shape[1], i, j, k
-    cdef int far = reach + 1, none = 1 << 30, square
-    cdef int* down = NULL
-    cdef int* squares = NULL
-    cdef int* best
-    cdef int* left
-    cdef int* right
-    try:
-        down = <int*>room(h * w, sizeof(int))
-        squares = <int*>room(2 * w + 2 * reach, sizeof(int))
-        best = squares + w + 2 * reach
-        with nogil:
-            count_down(mask, far, down)
-            for j in range(reach):
-                squares[j] = squares[reach + w + j] = none
-            for i in range(h):
-                left = down + i * w
+    cdef Py_ssize_t h = mask.shape[0], w = mask.shape[1], rows = out.shape[0], i, j, k
+    cdef Py_ssize_t begin = max(0, top - reach), end = min(h, top + rows + reach)
+    cdef unsigned char far = <unsigned char>(reach + 1), n
+    cdef short none = 1 << 14, square, limit = <short>most
+    cdef unsigned char* row
+    cdef short* squares = &best[0, 0]
+    cdef short* least = &best[1, 0]
+    cdef short* left
+    cdef short* right
+    with nogil:
+        count_near(mask, begin, end, far, &down[0, 0])
+        for j in range(reach):
+            squares[j] = squares[reach + w + j] = none
+        for i in range(rows):
+            row = &down[top + i - begin, 0]
+            for j in range(w):
+                n = row[j]
+                square = <short>n * <short>n
+                squares[reach + j] = least[j] = square if n < far else none
+            for k in range(1, reach + 1):
+                left = squares + reach - k
+                right = squares + reach + k
+                square = <short>(k * k)
                 for j in range(w):
-                    square = left[j] * left[j]
-                    squares[reach + j] = best[j] = square if left[j] < far else none
-                for k in range(1, reach + 1):
-                    left = squares + reach - k
-                    right = squares + reach + k
-                    square = <int>(k * k)
-                    for j in range(w):
-                        best[j] = min(best[j], min(left[j], right[j]) + square)
-                for j in range(w):
-                    out[i, j] = best[j] <= most
-    finally:
-        free(down)
-        free(squares)
+                    least[j] = min(least[j], <short>(min(left[j], right[j]) + square))
+            for j in range(w):
+                out[i, j] = least[j] <= limit
+
+
+cdef void count_near(
+    const unsigned char[:, ::1] mask, Py_ssize_t begin, Py_ssize_t end, unsigned char far, unsigned char* down
+) noexcept nogil:
+    """`count_down` of the rows begin … end of the mask alone, to octets."""
+    cdef Py_ssize_t w = mask.shape[1], i, j
+    cdef const unsigned char* here
+    cdef unsigned char* row
+    cdef unsigned char* other
+    for i in range(end - begin):
+        here = &mask[begin + i, 0]
+        row = down + i * w
+        other = row - w
+        if i > 0:
+            for j in range(w):
+                row[j] = min(far, <unsigned char>(other[j] + 1)) if here[j] else 0
+        else:
+            for j in range(w):
+                row[j] = far if here[j] else 0
+    for i in range(end - begin - 2, -1, -1):
+        row = down + i * w
+        other = row + w
+        for j in range(w):
+            row[j] = min(row[j], <unsigned char>(other[j] + 1))
 
 
 cdef void count_down(const unsigned char[:, ::1] mask, int far, int* down) noexcept nogil:
