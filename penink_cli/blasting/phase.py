@@ -79,61 +79,80 @@ def solve(field: Field, walls: Floats | None, seed: int, each: Each = one_by_one
         at = (walls - np.array([nodes.left, nodes.top] * 2)) / np.array([nodes.dx, nodes.dy] * 2)
         _phase.weaken(np.ascontiguousarray(at), weak)
 
-    def made(low: int, high: int) -> Plane:
-        out = np.empty((high - low, nodes.columns, 6), np.float32)
-        _phase.links(field.nx, field.ny, field.density, weak, nodes.dx, nodes.dy, LEAK, LEAST, ALONG, low, out)
+    rows, columns, wide = nodes.rows, nodes.columns, _phase.wide(nodes.columns)
+
+    def made(low: int, out: Plane) -> Plane:
+        row = np.empty((3, columns), np.float32)
+        _phase.links(field.nx, field.ny, field.density, weak, nodes.dx, nodes.dy, LEAK, LEAST, ALONG, low, row, out)
         return out
 
-    kept = made(0, nodes.rows) if nodes.rows * nodes.columns <= KEPT else None
+    kept = np.empty((rows if rows * columns <= KEPT else 0, 12, wide), np.float32)
+
+    def keep(low: int) -> None:
+        made(low, kept[low : low + BAND])
+
+    each(keep, range(0, len(kept), BAND))
 
     def links(low: int, high: int) -> Plane:
-        return made(low, high) if kept is None else kept[low:high]
+        return kept[low:high] if len(kept) else made(low, np.empty((high - low, 12, wide), np.float32))
 
     # coarser and coarser links; the finest are made anew for each band when it is their turn
-    levels: list[Plane] = []
-    if min(nodes.rows, nodes.columns) > 4:
-        levels.append(_halved(links, nodes.rows, nodes.columns, each))
-        while min(levels[-1].shape[:2]) > 4:
-            rows, columns = levels[-1].shape[:2]
-            levels.append(_halved(lambda low, high: levels[-1][low:high], rows, columns, each))
-    psi = np.zeros((0, 0, 2), np.float32)
-    for k, level in reversed(list(enumerate(levels))):
-        finer = np.empty((*level.shape[:2], 2), np.float32)
+    levels: list[tuple[int, Plane]] = []
+    if min(rows, columns) > 4:
+        levels.append(_halved(links, rows, columns, each))
+        while min(levels[-1][0], len(levels[-1][1])) > 4:
+            rows_there = len(levels[-1][1])
+            levels.append(_halved(lambda low, high: levels[-1][1][low:high], rows_there, levels[-1][0], each))
+    psi = np.zeros((0, 4, 0), np.float32)
+    for k, (across, level) in reversed(list(enumerate(levels))):
+        finer = np.empty((len(level), 4, level.shape[2]), np.float32)
 
-        def band(low: int, level: Plane = level, finer: Plane = finer, psi: Plane = psi, k: int = k) -> None:
+        def band(
+            low: int, level: Plane = level, finer: Plane = finer, psi: Plane = psi, k: int = k, across: int = across
+        ) -> None:
             high, begin, end = _reach(low, len(level), COARSE_SWEEPS)
-            out = np.empty((end - begin, level.shape[1], 2), np.float32)
-            _phase.relax(level[begin:end], psi, begin, seed + k, COARSE_SWEEPS, out)
-            finer[low:high] = out[low - begin : high - begin]
+            room = np.zeros((end - begin + 2, 4, level.shape[2]), np.float32)
+            out = finer[low:high]
+            _phase.relax(level[begin:end], psi, begin, across, seed + k, COARSE_SWEEPS, room, low - begin, out)
 
-        each(band, range(0, len(level), BAND))
+        each(band, range(0, len(level), _even(len(level))))
         psi = finer
         levels.pop()
-    phase = np.empty((nodes.rows, nodes.columns), np.float32)
+    phase = np.empty((rows, columns), np.float32)
 
     def finest(low: int) -> None:
-        high, begin, end = _reach(low, nodes.rows, SWEEPS)
-        out = np.empty((end - begin, nodes.columns, 2), np.float32)
-        _phase.relax(links(begin, end), psi, begin, seed, SWEEPS, out)
-        _phase.turns(out[low - begin : high - begin], phase[low:high])
+        high, begin, end = _reach(low, rows, SWEEPS)
+        out, room = np.empty((high - low, 4, wide), np.float32), np.zeros((end - begin + 2, 4, wide), np.float32)
+        _phase.relax(links(begin, end), psi, begin, columns, seed, SWEEPS, room, low - begin, out)
+        _phase.turns(out, np.empty((1, wide), np.float32), phase[low:high])
 
-    each(finest, range(0, nodes.rows, BAND))
+    each(finest, range(0, rows, _even(rows)))
     return phase
+
+
+def _even(rows: int) -> int:
+    """Rows to a band, an even number: as few bands as may be, each as long as the others, as threads like them."""
+    bands = -(-rows // BAND)
+    return 2 * -(-rows // (2 * bands))
 
 
 def _reach(low: int, rows: int, sweeps: int) -> tuple[int, int, int]:
     """Where the band from row low ends, and the first and the end of the rows that are felt in it."""
-    high = min(low + BAND, rows)
+    high = min(low + _even(rows), rows)
     margin = 2 * sweeps + 2
     return high, max(low - margin, 0), min(high + margin, rows)
 
 
-def _halved(links: Callable[[int, int], Plane], rows: int, columns: int, each: Each) -> Plane:
-    """Links between every second node of a grid, from those of the grid itself, which are made band by band."""
-    out = np.empty(((rows + 1) // 2, (columns + 1) // 2, 6), np.float32)
+def _halved(links: Callable[[int, int], Plane], rows: int, columns: int, each: Each) -> tuple[int, Plane]:
+    """How many columns every second node of a grid makes, and links between these, made band by band.
+
+    links: those of rows low … high of the grid itself.
+    """
+    across = (columns + 1) // 2
+    out = np.empty(((rows + 1) // 2, 12, _phase.wide(across)), np.float32)
 
     def band(low: int) -> None:
-        _phase.coarsen(links(low, min(low + BAND, rows)), low, out)
+        _phase.coarsen(links(low, min(low + BAND, rows)), low, across, out)
 
     each(band, range(0, rows, BAND))
-    return out
+    return across, out

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from penink_cli.blasting import curves, level_lines, pen_lines, phase
+from penink_cli.blasting._compiled import phase as kernel
 
 STEP = 0.96
 
@@ -58,6 +59,16 @@ def test_bands_change_nothing(turn, monkeypatch) -> None:
         assert np.array_equal(sorted_segments(banded), legs)
         # joined again: lines are as long as they were
         assert len(banded.ring) == len(lines_of(f).ring)
+
+
+def test_wider_vectors_change_no_byte() -> None:
+    f = field(waves, 131, 97)
+    wall = np.array([[-20.0, -60.0, 15.0, 60.0]])
+    results = []
+    for lanes in (16, 32):
+        kernel.take_lanes(lanes)
+        results.append(phase.solve(f, wall, 3).tobytes())
+    assert results[0] == results[1]
 
 
 def test_threads_change_nothing(monkeypatch) -> None:

@@ -141,7 +141,7 @@ def within(
     const unsigned char[:, ::1] mask, int reach, int most, unsigned char[:, ::1] down, short[:, ::1] best,
     Py_ssize_t top, unsigned char[:, ::1] out,
 ) -> None:
-    """Of the rows from `top` on, which pixels (rows, w) one outside the mask (h, w) is so near to that the square of the
+    """Of the rows from `top` on, which pixels (rows, w) one outside the mask (h, w) is near to: the square of the
     distance is `most` at the most.
 
     reach: pixels, the root of that rounded down, 100 at the most: what is counted fits into octets, its square into
