@@ -5,6 +5,7 @@ from __future__ import annotations
 import errno
 import fcntl
 import os
+import socket
 import stat
 import threading
 from pathlib import Path
@@ -12,8 +13,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from penink_cli.ground import streams
-from penink_cli.ground.errors import StreamError
+from penink_cli.ground import changes, streams
+from penink_cli.ground.errors import LimitError, StreamError
 from penink_cli.ground.streams import inputs
 
 
@@ -130,6 +131,25 @@ def test_devices_are_written_straight():
         assert stat.S_ISCHR(os.stat(device).st_mode)
     with pytest.raises(StreamError, match=r"^/dev/full: cannot be written: No space left on device$"):
         put("/dev/full", b"x")
+
+
+@pytest.mark.parametrize("failure", [ValueError("stop"), LimitError("too many", "in.pgm"), OSError("else")])
+@pytest.mark.parametrize("where", ["file", "device", "bench"])
+def test_a_failure_of_the_writer_is_told_in_its_own_words_wherever_it_writes(tmp_path, where, failure):
+    target = {"file": str(tmp_path / "a"), "device": "/dev/null", "bench": "b"}[where]
+    with streams.workbench({"b": b""}), pytest.raises(type(failure)) as caught, streams.writing(target):
+        raise failure
+    assert caught.value is failure
+
+
+def test_an_input_that_is_there_and_cannot_be_opened_is_noted_as_it_is(tmp_path):
+    """Who watches it would else take it for a file that has come into being, again and again."""
+    path = str(tmp_path / "socket")
+    with socket.socket(socket.AF_UNIX) as listening:
+        listening.bind(path)
+        with changes.noting() as read, pytest.raises(StreamError), streams.reading(path):
+            pass
+        assert read == {path: changes.of_file(path)} and read[path] is not None
 
 
 @pytest.mark.parametrize("name", ["/dev/fd/%d", "/proc/self/fd/%d"])

@@ -1,4 +1,4 @@
-"""Smooth curves through points, and the fewest points whose curve stays near a path.
+"""Smooth curves through points, and few points whose curve stays near a path.
 
 The tangent at a point is that of the parabola through it and its two neighbours; between two points lies the cubic
 with their tangents.
@@ -13,17 +13,20 @@ from penink_cli.ground.model import Floats, Ints
 
 #: Rounds of smoothing that take the noise out of a path before points are chosen.
 _ROUNDS = 4
-#: What lies along the curve rather than beside it may be off by so much more: it is not seen.
+#: A point may be this many times as far from its place along the curve as from the curve: that is not seen.
 _ALONG = 4.0
 
 
 def lengths(points: Floats) -> Floats:
-    """Of each leg of a path (k, 2)."""
+    """Length (k - 1,) of each leg of a path (k, 2)."""
     return _size(points[1:] - points[:-1])
 
 
 def through(points: Floats, ring: bool) -> Floats:
-    """Control points (3 k + 1, 2) of the curve through points (k + 1, 2); of a ring the last is the first."""
+    """Control points (3 k + 1, 2) of the smooth curve through points (k + 1, 2), k at least 1.
+
+    ring: the curve is closed; the last point is the first again.
+    """
     if len(points) == 2:
         step = (points[1] - points[0]) / 3
         return np.stack([points[0], points[0] + step, points[1] - step, points[1]])
@@ -44,17 +47,20 @@ def through(points: Floats, ring: bool) -> Floats:
 def fewest(
     points: Floats, first: Ints, weight: Floats, near: float, weighed: float
 ) -> tuple[npt.NDArray[np.bool_], Floats, Floats]:
-    """Which points of open paths suffice, where they lie, and their weights: the curves through these stay near.
+    """Choose points of open paths such that the curves through these stay near the paths.
+
+    From the ends on, the worst point of each leg is added until none is wrong: few points, if not provably the fewest.
 
     Args:
-        points: (n, 2) of all paths.
-        first: (m + 1,) where each begins; none has fewer than two points.
-        weight: (n,) of each point, linear between those that are chosen.
-        near: how far a path, which is smoothed by as much first, may be from its curve.
-        weighed: the same of weights.
+        points: (n, 2) of all paths, one path after the other.
+        first: (m + 1,) where each path begins; none has fewer than two points.
+        weight: (n,) of each point; it is linear between the points that are chosen.
+        near: how far a curve may be from its path, and how far smoothing may move a point of the path before.
+        weighed: how far the weight may be off.
 
     Returns:
-        (n,) whether a point is chosen, (n, 2) places, those of the chosen ones rounded, (n,) weights, smoothed.
+        (n,) whether a point is chosen, (n, 2) the smoothed places, those of chosen points in whole numbers, (n,) the
+        smoothed weights.
 
     """
     count = np.diff(first)
@@ -68,7 +74,7 @@ def fewest(
         smooth = np.clip(smooth, points - near, points + near)
         weight = weight.copy()
         weight[inner] = (weight[inner - 1] + 2 * weight[inner] + weight[inner + 1]) / 4
-        # a tip is as what is beside it, so that no start of a ring stands out
+        # an end has its neighbour's weight, so that the start of a ring does not stand out
         weight[first[:-1]], weight[first[1:] - 1] = weight[first[:-1] + 1], weight[first[1:] - 2]
         weight = np.clip(weight, given - weighed, given + weighed)
     legs = np.zeros(len(points))
@@ -97,7 +103,7 @@ def fewest(
 
 
 def _tangents(points: Floats, first: Ints) -> Floats:
-    """At each of the points of several open paths (n, 2), times the length of the leg that follows, or leads there."""
+    """The curve's direction (n, 2) at each point (n, 2) of several open paths, of about length 1."""
     steps = points[1:] - points[:-1]
     size = np.maximum(_size(steps), 1e-9)[:, None]
     slope = steps / size
@@ -113,7 +119,7 @@ def _tangents(points: Floats, first: Ints) -> Floats:
 
 
 def _beside(knots: Floats, tangent: Floats, leg: Ints, u: Floats, at: Floats) -> tuple[Floats, Floats]:
-    """How far places lie beside the curve, and in all from its point at u of the leg."""
+    """How far places (q, 2) lie from the curve's points at u (q, 1) of legs (q,): across the curve, and in all."""
     a, d = knots[leg], knots[leg + 1]
     size = _size(d - a)[:, None]
     b, c = a + tangent[leg] * size / 3, d - tangent[leg + 1] * size / 3

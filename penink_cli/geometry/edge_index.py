@@ -1,8 +1,9 @@
 """The edges near a place: lists, by the cells of a uniform grid, of those whose bounding boxes touch each cell.
 
-One index for all who look edges up a few times for each edge. Two others stay beside it, whose worth
-`python -m tests.benchmarks.edge_index` prints: the reconstruction's (`reconstruction/_compiled/cells.pyx`), which is
-asked millions of times, and the arrangement's (`arrangement/_compiled/planar.pyx`), whose edges come and go.
+It serves every part of the program that looks edges up a few times for each edge. Two others stay beside it; their
+worth is what `python -m tests.benchmarks.edge_index` prints. The reconstruction's
+(`reconstruction/_compiled/cells.pyx`) is asked millions of times, and the edges of the arrangement's
+(`arrangement/_compiled/planar.pyx`) come and go.
 """
 
 from __future__ import annotations
@@ -19,8 +20,8 @@ from penink_cli.ground.model import Floats, Ints
 class EdgeGrid:
     """Segments, and those near each square of a grid over them.
 
-    ends: (m, 4) x, y, x, y. size: of a square, as long. columns: squares in a row. Those near square c, which is
-    `columns` · row + column, are items[begin[c] : begin[c + 1]].
+    ends: (m, 4) x, y, x, y of both ends. size: side of a square. columns: squares in a row. The segments near square c,
+    which is `columns` · row + column, are items[begin[c] : begin[c + 1]].
     """
 
     ends: Floats
@@ -31,15 +32,15 @@ class EdgeGrid:
 
 
 def grid(ends: Floats, size: float, width: float, height: float) -> EdgeGrid:
-    """Segments (m, 4) within width × height, by squares of that size; there is one more beyond the frame each way."""
+    """Segments (m, 4) within width × height, by squares of that size; two rows and columns lie beyond the frame."""
     columns, rows = math.ceil(width / size) + 2, math.ceil(height / size) + 2
     return EdgeGrid(ends, size, columns, *lists(*cells(ends, size), columns, rows))
 
 
 def touched(low: Ints, high: Ints, columns: int) -> tuple[Ints, Ints]:
-    """Cells, row by row numbered, and boxes (m,): each box with each cell that it touches; by cell, then by box.
+    """Pairs of a cell and a box that touches it, (p,) and (p,), by cell, then by box. Cells are numbered row by row.
 
-    low, high: (m, 2) column and row of the first and of the last cell of each box; one with none has low above high.
+    low, high: (m, 2) column and row of the first and the last cell of each box; a box without cells has low above high.
     """
     wide, tall = np.maximum(high - low + 1, 0).T
     count = wide * tall
@@ -51,9 +52,9 @@ def touched(low: Ints, high: Ints, columns: int) -> tuple[Ints, Ints]:
 
 
 def lists(low: Ints, high: Ints, columns: int, rows: int) -> tuple[Ints, Ints]:
-    """The boxes that touch each cell, those of cell c being items[begin[c] : begin[c + 1]]: (begin, items).
+    """(begin, items): the boxes that touch cell c are items[begin[c] : begin[c + 1]].
 
-    low, high: as of `touched`; cells outside of the columns × rows are left out.
+    low, high: as of `touched`; cells outside columns × rows are left out.
     """
     cell, box = touched(np.maximum(low, 0), np.minimum(high, (columns - 1, rows - 1)), columns)
     return np.searchsorted(cell, np.arange(columns * rows + 1)), box

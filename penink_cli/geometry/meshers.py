@@ -2,10 +2,10 @@
 
 `triangle` wraps Shewchuk's Triangle, which may not be sold or put into a commercial product; it has no release for
 CPython 3.14, 64-bit ARM or musl. `pythoncdt` (MPL 2.0) is there everywhere. Both give a constrained Delaunay
-triangulation; where four vertices lie on a circle the diagonals differ, so nothing that is written may depend on them.
-The regions are the same, and so are the bytes.
+triangulation. Where four vertices lie on a circle the two choose different diagonals, so nothing that is written may
+depend on these. The regions are the same, and so are the bytes.
 
-The environment variable PENINK_MESHER names the one to take; otherwise it is `triangle` where that is installed.
+The environment variable PENINK_MESHER names the library to use; without it, `triangle` is used where it is installed.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ OWN = 2  # segment marker of the arrangement's edges; triangle uses 0 and 1 for 
 
 
 def by_triangle(vertices: Floats, segments: Ints) -> Ints:
-    """Triangles (t, 3) by `triangle`, turning either way; see `mesh`."""
+    """Triangles (t, 3) by `triangle`; see `mesh`."""
     import triangle
 
     # "p" obeys segments, "c" fills the convex hull, which is the frame. Without "c" nothing is left of open edges, and
@@ -37,9 +37,11 @@ def by_triangle(vertices: Floats, segments: Ints) -> Ints:
         )
     else:
         result = triangle.triangulate({"vertices": vertices}, "c")
-    if len(result["vertices"]) != len(vertices):
+    triangles = np.asarray(result["triangles"], np.int64)
+    # It splits crossing segments at a new vertex, and a segment through a vertex in silence.
+    if len(result["vertices"]) != len(vertices) or not _has_sides(triangles, segments, len(vertices)):
         raise _crossing()
-    return np.asarray(result["triangles"], np.int64)
+    return triangles
 
 
 def by_pythoncdt(vertices: Floats, segments: Ints) -> Ints:
@@ -53,7 +55,7 @@ def by_pythoncdt(vertices: Floats, segments: Ints) -> Ints:
     mesh.insert_vertices(np.ascontiguousarray(vertices, np.float64))
     try:
         mesh.insert_edges(np.ascontiguousarray(edges, np.uintc))
-    except Exception as error:  # of its own kinds, which are not exported
+    except Exception as error:  # the library does not export its classes of errors
         raise _crossing() from error
     mesh.erase_outer_triangles()
     # It splits an edge through a vertex in silence.
@@ -66,13 +68,21 @@ MESHERS: dict[str, Callable[[Floats, Ints], Ints]] = {"triangle": by_triangle, "
 
 
 def mesh(vertices: Floats, segments: Ints) -> Ints:
-    """Triangles (t, 3) that fill a frame and keep to the segments (m, 2) of a valid arrangement.
+    """Triangles (t, 3) that fill a frame and keep to the segments (m, 2) of a valid arrangement, turning either way.
 
     vertices: (n, 2) finite, each once, the frame's corners among them.
 
-    Raises ArrangementError where segments cross or run through a vertex, ParameterError for want of a library.
+    Raises ArrangementError where segments cross or run through a vertex, ParameterError where no library is installed
+    or PENINK_MESHER names another.
     """
     return MESHERS[_chosen()](vertices, segments)
+
+
+def _has_sides(triangles: Ints, segments: Ints, n: int) -> bool:
+    """Whether every segment (m, 2) between n vertices is a side of a triangle (t, 3)."""
+    following = np.roll(triangles, -1, axis=1)
+    sides = np.minimum(triangles, following) * n + np.maximum(triangles, following)
+    return bool(np.isin(segments.min(axis=1, initial=n) * n + segments.max(axis=1, initial=0), sides).all())
 
 
 def _chosen() -> str:
@@ -87,7 +97,7 @@ def _chosen() -> str:
     for name in MESHERS:
         if importlib.util.find_spec(name) is not None:
             return name
-    raise ParameterError("neither triangle nor pythoncdt is installed, one of which parts the frame into regions")
+    raise ParameterError("neither triangle nor pythoncdt is installed; one is needed to part the frame into regions")
 
 
 def _frame(vertices: Floats) -> list[Any]:

@@ -1,9 +1,9 @@
 """Vertices moved to a grid without breaking the arrangement.
 
-Rounding can make edges cross, touch or coincide that only came close. The remedy is the one of snap
-rounding (Hobby 1999): an edge that passes over a vertex is split there, two edges that cross
+Rounding can make edges that only come close cross, touch or coincide. The remedy is that of snap
+rounding (Hobby 1999): an edge that passes over a vertex is split there, and two edges that cross
 are split at the grid point nearest to their crossing, until nothing is left to split. Each
-split moves an edge by less than a cell of the grid, which is finer than edges are found.
+split moves an edge by less than a cell of the grid; edges are not found as exactly as that.
 """
 
 from __future__ import annotations
@@ -15,18 +15,19 @@ from penink_cli.geometry.sides import rounded_beside_samples
 from penink_cli.ground.median import distinct
 from penink_cli.ground.model import EdgeList, Floats, Ints
 
-_CELL = 16  # grid points: conflicts are looked for among the edges of such a cell
-_ROUNDS = 50
+_CELL = 16  # grid points: side of the cells within which conflicts are looked for
+_ROUNDS = 50  # of splitting, after which the edges of a tangle are left out
 
 
 def quantise(edges: EdgeList, columns: int, rows: int, cell: int = 0) -> EdgeList:
-    """The arrangement with every vertex on a grid of columns × rows cells that spans the frame.
+    """The arrangement with every vertex on a grid of columns × rows cells that spans the frame, each below 2²⁴.
 
-    cell: grid cells to a sample's spacing, where samples are to stay on their sides of the edges; 0 for none.
+    cell: grid cells to a sample's spacing, where samples are to stay on their sides of the edges; 0 where there are
+    none.
 
-    Vertices that come to lie on one another are one, edges that shrink to nothing are gone, of
-    edges that coincide the stronger stays. What is on the grid already is returned unchanged but for
-    vertices without edges, which are left out.
+    Vertices that come to lie on one another become one. Edges that shrink to nothing are left out, and
+    of edges that coincide the strongest stays. An arrangement on the grid is returned unchanged, but
+    without vertices that have no edge.
     """
     exact = edges.vertices * (columns / edges.width, rows / edges.height)
     grid = rounded_beside_samples(exact, edges.edges, cell) if cell else np.rint(exact).astype(np.int64)
@@ -48,7 +49,7 @@ def quantise(edges: EdgeList, columns: int, rows: int, cell: int = 0) -> EdgeLis
 
 
 def _merged(grid: Ints, ends: Ints, strength: Floats) -> tuple[Ints, Ints, Floats]:
-    """One vertex a point, each edge once and none without length, no vertex without an edge; sorted by place."""
+    """The same with one vertex a point, each edge once, none without length and no vertex without an edge; sorted."""
     points, which = np.unique(grid[:, ::-1], axis=0, return_inverse=True)
     ends = np.sort(which.reshape(-1)[ends], axis=1) if len(ends) else ends.reshape(0, 2)
     ends, strength = ends[ends[:, 0] != ends[:, 1]], strength[ends[:, 0] != ends[:, 1]]
@@ -81,7 +82,7 @@ def _turn(a: Ints, b: Ints, c: Ints) -> Ints:
 
 
 def _conflicts(grid: Ints, ends: Ints) -> Ints:
-    """Where an arrangement it is not: (s, 3) edge and the point x, y to split it at."""
+    """Splits (s, 3) that the arrangement needs: an edge, and x, y of the point to split it at."""
     pairs = _near_pairs(grid, ends)
     found = [np.zeros((0, 3), np.int64)]
     for one, other in ((0, 1), (1, 0)):
@@ -105,7 +106,7 @@ def _conflicts(grid: Ints, ends: Ints) -> Ints:
 
 
 def _split(grid: Ints, ends: Ints, strength: Floats, splits: Ints) -> tuple[Ints, Ints, Floats]:
-    """Each edge that splits (s, 3) names goes through their points, in order along it."""
+    """The arrangement with each edge of the splits (s, 3) led through its points, in their order along the edge."""
     edge, points = splits[:, 0], splits[:, 1:]
     number = len(grid) + np.arange(len(points))
     grid = np.concatenate([grid, points])

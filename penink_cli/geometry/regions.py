@@ -1,4 +1,4 @@
-"""Regions of an arrangement: what its edges part from the rest, chosen by a point inside."""
+"""Regions of an arrangement, which its edges part from one another, chosen by points inside."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy.typing as npt
 from penink_cli.geometry.triangulation import Triangulation, triangulate
 from penink_cli.ground.model import EdgeList, Floats
 
-_NUDGE = (1e-7, 1e-8)  # pixels: a pixel's centre that lies on an edge goes to one side of it, always the same
+_NUDGE = (1e-7, 1e-8)  # pixels by which centres are shifted, so that none lies on an edge: the tie rule of `predicates`
 
 
 def edges_around(edges: EdgeList, points: Floats) -> npt.NDArray[np.bool_]:
@@ -27,7 +27,10 @@ def edges_around(edges: EdgeList, points: Floats) -> npt.NDArray[np.bool_]:
 
 
 def region_mask(edges: EdgeList, points: Floats, columns: int, rows: int) -> npt.NDArray[np.bool_]:
-    """Which pixels (rows, columns) of a picture that fills the frame have their centre in those regions."""
+    """Which pixels (rows, columns) of a picture that fills the frame have their centres in the points' regions.
+
+    points: (p, 2). Raises ArrangementError for a point outside the frame.
+    """
     mesh = triangulate(edges)
     inside = np.zeros((rows, columns), bool)
     scale = np.array([columns / edges.width, rows / edges.height])

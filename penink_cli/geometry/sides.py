@@ -1,8 +1,8 @@
 """Vertices rounded to a grid such that every sample stays on its side of every edge.
 
-An edge that is rounded may come to lie on a sample, or beyond it. That sample then speaks for the wrong side, and
-where a dark thing meets a light ground its tone shows as a blot outside. There is nearly always another grid point
-close by that leaves all samples where they were.
+A rounded edge may come to lie on a sample, or beyond it. The sample is then on the wrong side, and where a dark thing
+meets a light ground its tone shows as a blot outside the thing. There is nearly always another grid point close by that
+leaves all samples on their sides.
 """
 
 from __future__ import annotations
@@ -20,13 +20,13 @@ _ROUNDS = 3
 
 
 def _side(a: Point, b: Point, sample: Point) -> bool:
-    """Whether a sample is to the left of a → b; one that is on it stands off it by (ε, ε²), see predicates."""
+    """Whether a sample is to the right of a → b, y being down; ties by the rule of `_compiled/predicates.pyx`."""
     turn = (b[0] - a[0]) * (sample[1] - a[1]) - (b[1] - a[1]) * (sample[0] - a[0])
     return (turn or a[1] - b[1] or b[0] - a[0]) > 0
 
 
 def _passed(a: Point, b: Point, cell: int, first: float) -> list[Point]:
-    """Samples within a few grid steps of the edge a → b: the nearest one for each line of samples that it crosses."""
+    """Samples within a few grid steps of the edge a → b: on each line of samples that it crosses the nearest to it."""
     steep = abs(b[1] - a[1]) > abs(b[0] - a[0])
     (u0, v0), (u1, v1) = ((a[1], a[0]), (b[1], b[0])) if steep else (a, b)
     if u0 == u1:
@@ -43,7 +43,7 @@ def _passed(a: Point, b: Point, cell: int, first: float) -> list[Point]:
 
 
 def _changed(a: Point, b: Point, to_a: Point, to_b: Point, cell: int, first: float) -> list[Point]:
-    """The samples that change sides as the edge a → b moves."""
+    """The samples that change sides where the edge a → b moves to to_a → to_b."""
     return [s for s in _passed(to_a, to_b, cell, first) if _side(a, b, s) != _side(to_a, to_b, s)]
 
 
@@ -51,12 +51,12 @@ def rounded_beside_samples(exact: Floats, ends: Ints, cell: int, first: float | 
     """Grid points (n, 2) next to exact vertices (n, 2) that leave samples on their sides of the edges ends (m, 2).
 
     exact: in steps of the grid, of which `cell` go to a sample's spacing; sample i lies at first + cell i, where
-    first is cell / 2 unless given. Most are the nearest grid points. Where no choice near by serves a vertex, the one
-    by which the fewest samples change sides is taken. What is on the grid already stays.
+    first is cell / 2 unless given. Most vertices go to the nearest grid points. Where no grid point close by leaves all
+    samples on their sides, the one by which the fewest change sides is taken. A vertex on the grid stays.
     """
     first = cell / 2 if first is None else first
     near = np.rint(exact).astype(np.int64)
-    # what was on the grid before it was scaled to the frame and back is so exactly
+    # a vertex that was on the grid before it was scaled to the frame and back is to be on it exactly
     exact = np.where(np.abs(exact - near) < 1e-6, near, exact)
     at: list[Point] = [(float(x), float(y)) for x, y in exact.tolist()]
     grid: list[Point] = [(float(x), float(y)) for x, y in near.tolist()]

@@ -1,6 +1,6 @@
 """Edges as few long trails, as a pen would follow them: straight on at junctions, each edge once.
 
-Used by those who write edges down and by those who draw them. This module alone imports the compiled kernel.
+Formats write edges as trails, and outlines are drawn along them. This module alone imports the compiled kernel.
 """
 
 from __future__ import annotations
@@ -17,10 +17,10 @@ Trail = tuple[list[int], list[int]]
 def trails(points: npt.NDArray[np.floating] | Ints, ends: Ints, least_cosine: float = -1.0) -> list[Trail]:
     """The trails of an arrangement, each as its vertices and its edges (one fewer), in order along it.
 
-    points: (n, 2); ends: (m, 2). At a junction a trail goes on along the straightest edge left, and ends if the cosine
-    of the bend would be under least_cosine. Trails start where an odd number of edges meet, then, for the
-    rings that remain, at their topmost vertex. The result depends
-    on the places of vertices and edges alone, not on their numbers.
+    points: (n, 2); ends: (m, 2). At a junction a trail goes on along the straightest edge left. It ends there if the
+    cosine of the bend would be under least_cosine. Trails start where an odd number of edges meet; the rings that
+    remain start at their topmost vertex. The result depends on the places of vertices and edges alone, not on their
+    numbers.
     """
     rank = np.empty(len(points), np.int64)
     by_place = np.lexsort((points[:, 0], points[:, 1]))
@@ -42,7 +42,7 @@ def trails(points: npt.NDArray[np.floating] | Ints, ends: Ints, least_cosine: fl
 
 
 def hanging_together(edges: npt.NDArray[np.integer], count: int) -> Ints:
-    """(m,) for each edge (m, 2) between count vertices the least vertex that it hangs together with.
+    """(m,) for each edge (m, 2) between `count` vertices the least vertex of its connected component.
 
     >>> hanging_together(np.array([[4, 1], [2, 3], [1, 5]]), 6).tolist()
     [1, 2, 1]

@@ -1,6 +1,6 @@
 """The topology of an arrangement: its constrained Delaunay triangulation, the regions that edges enclose, walking.
 
-`meshers` asks a library for the triangles; nothing that is written may depend on more than the regions they make up.
+`meshers` asks a library for the triangles. Nothing that is written may depend on more than the regions that these form.
 Triangles turn positively, (b − a) × (c − a) > 0, which with y down is clockwise on the page:
 
         c            side k of a triangle runs from its corner k to its corner k + 1;
@@ -9,7 +9,7 @@ Triangles turn positively, (b − a) × (c − a) > 0, which with y down is cloc
      /     \\
     a---0---b
 
-A point asked about stands for p + (ε, ε²), as everywhere in this project, so it is always inside one triangle.
+A query point stands for p + (ε, ε²), the tie rule of `_compiled/predicates.pyx`, so it is always inside one triangle.
 """
 
 from __future__ import annotations
@@ -29,10 +29,10 @@ from penink_cli.ground.model import EdgeList, Floats, Ints
 class Triangulation:
     """A frame cut into triangles along the edges of an arrangement.
 
-    vertices: (n, 2) those of the arrangement that have an edge, then corners of the frame that are not among them.
-    source: (n,) the vertex of the edge list each was, −1 for a corner of the frame.
+    vertices: (n, 2) those of the arrangement that have an edge, then corners of the frame that are not among these.
+    source: (n,) each vertex's number in the edge list, −1 for a corner of the frame.
     triangles: (t, 3). neighbours: (t, 3) triangles, −1 for none. fixed: (t, 3).
-    regions: (t,) number of the region each triangle belongs to: triangles joined across sides that are not fixed.
+    regions: (t,) the number of each triangle's region; triangles are joined across sides that are not fixed.
     """
 
     vertices: Floats
@@ -51,9 +51,9 @@ class Triangulation:
         return s
 
     def locate(self, x: float, y: float, start: int = 0) -> int:
-        """The triangle that a point inside the frame is in, found by walking from another.
+        """The triangle that a point inside the frame is in, found by walking from triangle `start`.
 
-        A point outside the frame ends the walk at the border: ArrangementError.
+        Raises ArrangementError for a point outside the frame.
         """
         t, came = start, -1
         # A Delaunay triangulation has no cycle for a walk to fall into, a constrained one may: the side to begin with
@@ -75,7 +75,10 @@ class Triangulation:
         raise ArrangementError(f"point {x:.6g},{y:.6g} is outside the frame")
 
     def regions_of(self, points: Floats) -> Ints:
-        """(n,) the region that each point (n, 2) is in; points near each other are found fastest in a row."""
+        """(n,) the region that each point (n, 2) is in; fastest where each point is near the one before.
+
+        Raises ArrangementError for a point outside the frame.
+        """
         out = np.empty(len(points), np.int64)
         t = 0
         for i, (x, y) in enumerate(points.tolist()):
@@ -85,7 +88,10 @@ class Triangulation:
 
 
 def triangulate(edges: EdgeList) -> Triangulation:
-    """The constrained Delaunay triangulation of a valid arrangement within its frame."""
+    """The constrained Delaunay triangulation of a valid arrangement within its frame.
+
+    Raises ArrangementError where edges cross or pass through a vertex, ParameterError where no mesher is installed.
+    """
     used = np.unique(edges.edges)
     place = np.full(len(edges.vertices), -1, np.int64)
     place[used] = np.arange(len(used))
@@ -103,14 +109,17 @@ def triangulate(edges: EdgeList) -> Triangulation:
 
 
 def _turned(vertices: Floats, triangles: Ints) -> Ints:
-    """All triangles turning positively."""
+    """All triangles turning positively. The few slivers whose turn rounding could hide are asked exactly."""
     a, b, c = (vertices[triangles[:, k]] for k in range(3))
-    area = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])
-    return np.where((area < 0)[:, None], triangles[:, ::-1], triangles)
+    left, right = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]), (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])
+    turn = np.sign(left - right)
+    for t in np.flatnonzero(np.abs(left - right) <= 1e-15 * (np.abs(left) + np.abs(right))):
+        turn[t] = orientation(*a[t], *b[t], *c[t])
+    return np.where((turn < 0)[:, None], triangles[:, ::-1], triangles)
 
 
 def _neighbours(triangles: Ints) -> Ints:
-    """The triangle beyond each side: the two halves of a side are next to each other once sides are sorted."""
+    """The triangle beyond each side, −1 for none. Sorted by their ends, the two halves of a side stand side by side."""
     sides = np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=-1).reshape(-1, 2)
     low, high = sides.min(axis=1), sides.max(axis=1)
     order = np.lexsort((high, low))
@@ -131,7 +140,7 @@ def _fixed(triangles: Ints, segments: Ints, n: int) -> npt.NDArray[np.bool_]:
 
 
 def _regions(neighbours: Ints, fixed: npt.NDArray[np.bool_]) -> Ints:
-    """Label triangles joined across free sides, numbered by their first triangle."""
+    """The region (t,) of each triangle: triangles joined across free sides. Regions are numbered by first triangles."""
     region = np.full(len(neighbours), -1, np.int64)
     count = 0
     free = np.where(fixed, -1, neighbours).tolist()

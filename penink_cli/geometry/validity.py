@@ -1,6 +1,6 @@
 """Whether an edge list is an arrangement: edges that meet only at shared vertices, each once, within the frame.
 
-Everything is decided exactly, on the coordinates as they are. The first fault found is raised, with the edges named.
+Everything is decided exactly, on the coordinates as they are. The first fault found is raised and names its edges.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ def check(edges: EdgeList) -> None:
     first = np.zeros(len(x) + 1, np.intc)
     np.cumsum(np.bincount(start, minlength=len(x)), out=first[1:])
     used = np.zeros(len(x), bool)
-    used[edges.edges] = True  # a vertex without an edge is of no consequence, wherever it lies
+    used[edges.edges] = True  # a vertex without an edge may lie on an edge
     order = order[used[order]]
     fault = _sweep.find(x, y, order, start, end, leaving, first)
     if fault is None:
@@ -50,7 +50,7 @@ def check(edges: EdgeList) -> None:
 
 
 def _by_x_then_y(x: Floats, y: Floats) -> npt.NDArray[np.intc]:
-    """The order of the vertices. One sort and another of those with equal x: a third of a lexsort of all."""
+    """The order of the vertices. A sort by x and another of those with equal x take a third of a lexsort's time."""
     order = np.argsort(x, kind="stable")
     same = np.diff(x[order]) == 0
     tied = np.zeros(len(x), bool)
@@ -86,7 +86,8 @@ def _check_ends(edges: EdgeList) -> None:
     if bad.any():
         e = int(bad.argmax())
         v = next(int(k) for k in ends[e] if not 0 <= k < len(edges.vertices))
-        raise ArrangementError(f"edge {e}: vertex {v} is not in 0..{len(edges.vertices) - 1}")
+        known = f"0..{len(edges.vertices) - 1}" if len(edges.vertices) else "an empty list"
+        raise ArrangementError(f"edge {e}: vertex {v} is not in {known}")
     bad = ends[:, 0] == ends[:, 1]
     if bad.any():
         e = int(bad.argmax())
@@ -101,7 +102,7 @@ def _check_ends(edges: EdgeList) -> None:
 
 
 def _touch(edges: EdgeList, e: int, v: int) -> str:
-    """How a vertex in the middle of an edge is reported: an overlap if an edge at the vertex lies along the other."""
+    """The report of vertex v in the middle of edge e: as an overlap if an edge at the vertex lies along e."""
     a, b = edges.vertices[edges.edges[e]]
     here = edges.vertices[v]
     touching = np.flatnonzero((edges.edges == v).any(axis=1))
@@ -115,7 +116,7 @@ def _touch(edges: EdgeList, e: int, v: int) -> str:
 
 
 def _where(edges: EdgeList, v: int) -> str:
-    """The first edge at a vertex, to begin a message with."""
+    """The beginning of a message about a vertex, which names the first edge at it."""
     at = (edges.edges == v).any(axis=1)
     return f"edge {int(at.argmax())}: " if at.any() else ""
 

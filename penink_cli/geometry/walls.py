@@ -1,7 +1,9 @@
 """Edges drawn into a grid of pixels: as walls between the centres of pixels, and as distances from them.
 
-A step from a centre to the next, in its row or below, meets an edge or is open; a centre on an edge stands for itself
-shifted by (ε, ε²), the tie rule of all predicates. What open steps join is a region.
+A step from a pixel's centre to the next in its row, or to the one below, meets an edge or is open. A centre on an edge
+stands for itself shifted by (ε, ε²), the tie rule of `_compiled/predicates.pyx`. Open steps join pixels to a region.
+
+This module alone imports the compiled kernel.
 """
 
 from __future__ import annotations
@@ -26,28 +28,28 @@ def segments(edges: EdgeList, width: int, height: int) -> tuple[Floats, Floats, 
 
 
 def walls(edges: EdgeList, width: int, height: int) -> Walls:
-    """(h, w) `RIGHT` where the step from a pixel's centre to the next in its row meets an edge, `DOWN` likewise."""
+    """(h, w) bits: `RIGHT` where the step to the next pixel in the row meets an edge, `DOWN` where that below does."""
     met = np.zeros((height, width), np.uint8)
     _walls.block(*segments(edges, width, height), met)
     return met
 
 
 def distances(edges: EdgeList, width: int, height: int, most: float) -> npt.NDArray[np.float32]:
-    """(h, w) from each pixel's centre to the nearest edge, pixels, infinite where that is beyond `most`."""
+    """(h, w) distance in pixels from each pixel's centre to the nearest edge, infinite where it is beyond `most`."""
     away = np.full((height, width), np.inf, np.float32)
     _walls.near(*segments(edges, width, height), most, away)
     return away
 
 
 def nearest(edges: EdgeList, width: int, height: int, most: float) -> npt.NDArray[np.int32]:
-    """(h, w) which edge is the nearest to each pixel's centre, -1 where all are beyond `most` pixels."""
+    """(h, w) the edge that is nearest to each pixel's centre, -1 where all are beyond `most` pixels."""
     away, which = np.full((height, width), np.inf, np.float32), np.full((height, width), -1, np.int32)
     _walls.near(*segments(edges, width, height), most, away, which)
     return which
 
 
 def regions(met: Walls) -> npt.NDArray[np.int32]:
-    """(h · w,) for each pixel the first of those that open steps join it with; met: as of `walls`."""
+    """(h · w,) for each pixel the first pixel of its region. met: as of `walls`."""
     parent = np.zeros(met.size, np.int32)
     _walls.regions(met, parent)
     return parent

@@ -1,4 +1,4 @@
-"""What tells whether an input has changed, and which inputs a part of the program has read."""
+"""States of inputs, by which a change is seen, and a note of every input that a part of the program has read."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-#: Device, inode, size and time of a file, the bytes of a file on the workbench, or None where there is nothing.
+#: Device, inode, mode, size and time of a file, the bytes of a file on the workbench, or None where there is no file.
 State = tuple[int, ...] | bytes | None
 
 _noted: list[dict[str, State]] = []
@@ -14,7 +14,7 @@ _noted: list[dict[str, State]] = []
 
 @contextmanager
 def noting() -> Iterator[dict[str, State]]:
-    """The inputs that are opened while the block runs, by their names, as they were then."""
+    """The inputs that are opened while the block runs: their states at that moment, by their names."""
     read: dict[str, State] = {}
     _noted.append(read)
     try:
@@ -24,14 +24,14 @@ def noting() -> Iterator[dict[str, State]]:
 
 
 def note(path: str, state: State) -> None:
-    """An input is opened: for all who note."""
+    """Tell every block of `noting` that an input is opened, or could not be. The first state of a name is kept."""
     for read in _noted:
         read.setdefault(path, state)
 
 
 def of_status(status: os.stat_result) -> State:
     """The state of a file by its status."""
-    return status.st_dev, status.st_ino, status.st_size, status.st_mtime_ns
+    return status.st_dev, status.st_ino, status.st_mode, status.st_size, status.st_mtime_ns
 
 
 def of_file(path: str) -> State:

@@ -12,5 +12,9 @@ def of_code(code: str) -> Colour:
 
 
 def code_of(colour: Colour) -> str:
-    """``#rrggbb``."""
+    """``#rrggbb`` of red, green and blue, 0 … 1.
+
+    >>> code_of((1.0, 0.5, 0.0))
+    '#ff8000'
+    """
     return "#" + "".join(f"{round(255 * part):02x}" for part in colour)

@@ -9,7 +9,7 @@ from penink_cli.ground import exact
 
 Floats = npt.NDArray[np.float64]
 
-LEAST = 216 / 24389  # of CIE's cube root, which is straight below
+LEAST = 216 / 24389  # below it CIE's cube root is a straight line
 
 
 def linear(encoded: npt.ArrayLike) -> Floats:
@@ -24,14 +24,14 @@ def encoded(light: npt.ArrayLike) -> Floats:
     return np.asarray(np.where(v <= 0.0031308, v * 12.92, 1.055 * exact.power(v, 1 / 2.4) - 0.055))
 
 
-#: Light to X, Y, Z of a white of 1, 1, 1 (sRGB, D65).
+#: Linear sRGB to X, Y, Z, scaled so that white (D65) is 1, 1, 1.
 XYZ = (
     (0.412453 / 0.950456, 0.357580 / 0.950456, 0.180423 / 0.950456),
     (0.212671, 0.715160, 0.072169),
     (0.019334 / 1.088754, 0.119193 / 1.088754, 0.950227 / 1.088754),
 )
 
-#: And back.
+#: The inverse of `XYZ`: X, Y, Z to linear sRGB.
 RGB = (
     (3.079934935533, -1.537151516271, -0.542783419262),
     (-0.921234182754, 1.87599000149, 0.045244181264),
@@ -53,7 +53,7 @@ def light_of_lab(lab: Floats) -> Floats:
 
 
 def _cube(f: Floats) -> Floats:
-    """What `root` is of."""
+    """The inverse of `root`."""
     return np.where(f > 6 / 29, f * f * f, (116 * f - 16) * (27 / 24389))
 
 

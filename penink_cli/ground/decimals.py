@@ -4,7 +4,7 @@ from __future__ import annotations
 
 
 def plain(value: float, decimals: int) -> str:
-    """A number to so many decimals, without zeros at their end and never as minus nothing.
+    """A number rounded to so many decimals, without zeros at the end, and never "-0".
 
     >>> plain(1.5, 3), plain(2.0, 3), plain(-0.0001, 3)
     ('1.5', '2', '0')

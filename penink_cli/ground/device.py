@@ -1,9 +1,10 @@
 """What a printer adds to the width of a stroke: the one model that blasting, outputs and self-drawing pictures share.
 
 A PostScript device paints every pixel that a stroke touches. In the ideal that widens a stroke in the direction
-(cos θ, sin θ) by |cos θ| + |sin θ| of its pixels, and a dot by 4/π, the mean of that. Ghostscript falls a little short
-of both, for it flattens curves and inscribes polygons in discs; the factors here are what it paints, measured at 150 to
-1200 dpi by `python -m tests.benchmarks.devices`. Plotters and anti-aliased screens add nothing.
+(cos θ, sin θ) by |cos θ| + |sin θ| of its pixels, and a dot by the mean over all directions, 4/π. Ghostscript falls a
+little short of both, for it flattens curves and inscribes polygons in discs. The factors here are what Ghostscript
+paints at 150 to 1200 dpi; `python -m tests.benchmarks.devices` measures it. Plotters and anti-aliased screens add
+nothing.
 """
 
 from __future__ import annotations
@@ -16,30 +17,31 @@ import numpy as np
 from penink_cli.ground import exact
 from penink_cli.ground.model import Floats, Strokes
 
-#: Which part of a pixel's width the edges of a stroke gain, times |cos θ| + |sin θ|.
+#: A stroke is widened by this part of |cos θ| + |sin θ| pixels.
 EDGE = 0.985
-#: The same of a shape that is filled, as strokes that swell are: nothing is lost there.
+#: The same for a shape that is filled, as strokes that swell are: it is widened by all of it.
 FILLED = 1.0
-#: By how many pixels a dot is widened: 1.15 to 1.19 up to 12 of them, 1.09 at 16 to 20, in leaps: Ghostscript's dots
-#: are polygons of few corners. Of stipple that is .06 % of full scale at 300 and 600 dpi, .6 at 150 and .3 at 1200. A
-#: gain by size would follow the leaps of one program; finer polygons (`setflat`) change all dots and leap as well.
+#: Pixels by which a dot is widened. Ghostscript's dots are polygons of few corners: dots of up to 12 pixels gain 1.15
+#: to 1.19, those of 16 to 20 gain 1.09, in leaps. One factor for all is off on stipple by .06 % of full scale at 300
+#: and 600 dpi, by .6 at 150 and .3 at 1200. A gain by size would follow the leaps of one program; finer polygons
+#: (`setflat`) change all dots and leap as well.
 DOT = 1.16
 #: The mean over strokes in all directions, pixels.
 MEAN = 1.25
-STEP = 0.001  # points, to which changed widths are rounded
-LEAST = 0.01
+STEP = 0.001  # points: changed widths are whole numbers of it
+LEAST = 0.01  # points: no changed width is less
 
 
 def least(dot_pt: float) -> float:
-    """The narrowest stroke, points, that a device with such dots widens as told here; 0 for one without dots.
+    """The narrowest stroke, points, that a device with dots of that size widens by `gains`; 0 for one without dots.
 
-    Ghostscript paints what is narrower than a dot as a hairline, one dot for each row or column: less than half.
+    Ghostscript paints a narrower stroke as a hairline, one dot in each row or column: less than half of its ink.
     """
-    return (math.floor(100 * dot_pt + 1e-6) + 1) / 100 if dot_pt else 0.0  # strokes are written in hundredths
+    return (math.floor(100 * dot_pt + 1e-6) + 1) / 100 if dot_pt else 0.0  # the next hundredth above a dot
 
 
 def gains(strokes: Strokes, dpi: float) -> Floats:
-    """Points (s,) that a device of this resolution adds to the width of each stroke, on its way's average."""
+    """Points (s,) that a device of this resolution adds to the width of each stroke, as the mean along the stroke."""
     steps = np.diff(strokes.points, axis=0, prepend=strokes.points[:1])
     steps[strokes.first[:-1]] = 0.0
     if not len(strokes):
@@ -52,16 +54,17 @@ def gains(strokes: Strokes, dpi: float) -> Floats:
 
 
 def widened(strokes: Strokes, dpi: float) -> Strokes:
-    """As wide as a device of this resolution would paint them."""
+    """The strokes as wide as a device of this resolution would paint them."""
     return _with(strokes, gains(strokes, dpi))
 
 
 def narrowed(strokes: Strokes, dpi: float) -> Strokes:
-    """So that a device of this resolution paints them as wide as they were."""
+    """The strokes so much narrower that a device of this resolution paints them as wide as they were."""
     return _with(strokes, -gains(strokes, dpi))
 
 
 def _with(strokes: Strokes, more: Floats) -> Strokes:
+    """The strokes with so many points (s,) added to the width of each."""
     if strokes.knot_widths is not None:
         wider = strokes.knot_widths + np.repeat(more, np.diff(strokes.knots))
         return strokes.swelling(np.maximum(np.rint(wider / STEP) * STEP, LEAST))

@@ -1,6 +1,6 @@
 """Errors that a user can mend: each becomes one line on standard error and exit status 1.
 
-Anything else that is raised is a fault of ours. It still becomes one line, and
+Anything else that is raised is a fault of the program. It still becomes one line, and
 ``PENINK_DEBUG=1`` shows its traceback.
 """
 
@@ -9,7 +9,7 @@ class PeninkError(Exception):
     """What was found and what is allowed, in one line, without the name of the program.
 
     ``source`` names the file (``<stdin>`` for standard input) and is put before the
-    message. Algorithms, which know of no file, leave it empty; the one who knows the
+    message. Algorithms, which know of no file, leave it empty; the caller that knows the
     file adds it with `from_source`.
     """
 

@@ -1,10 +1,10 @@
 """Lengths, angles, exponentials and logarithms that are the same to the last bit everywhere.
 
-The C library's and numpy's own differ between versions and between processors. These use nothing but
-+ - * /, the square root and exact scalings by powers of two, which IEEE 754 defines to the bit, in a fixed order.
-They are within a few units in the last place. Kernels have the same functions: `_compiled/real.pxd`.
+The functions of C libraries and of numpy differ between versions and between processors. These functions use nothing
+but + - * /, the square root and exact scalings by powers of two, which IEEE 754 defines to the bit, in a fixed order.
+They are within a few units in the last place. Kernels have the same functions in `_compiled/real.pxd`.
 
-Arguments are floats or arrays of float64, results arrays of the same shape.
+Arguments are floats or arrays of float64, results are arrays of the same shape.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ Floats = npt.NDArray[np.float64]
 
 
 def hypot(x: npt.ArrayLike, y: npt.ArrayLike) -> Any:
-    """Length of the hypotenuse, for lengths whose squares are numbers.
+    """Length of the hypotenuse, for lengths whose squares are finite.
 
     >>> float(hypot(3.0, 4.0))
     5.0
@@ -36,7 +36,7 @@ def length(vectors: npt.ArrayLike) -> Any:
 
 
 def exp(x: npt.ArrayLike) -> Any:
-    """e to the power of x, for x up to 709; 0 below -700."""
+    """e to the power of x, for x up to 709; 0 for x below -700."""
     (x,), out = _flat(x)
     _exact.exponentials(x.ravel(), out.ravel())
     return out
@@ -50,14 +50,14 @@ def log(x: npt.ArrayLike) -> Any:
 
 
 def power(x: npt.ArrayLike, y: npt.ArrayLike) -> Any:
-    """x to the power of y, x from 0 on: e to the power of y ln x."""
+    """x to the power of y for x ≥ 0, as e to the power of y ln x; 0 to the power of 0 is 1."""
     (x, y), out = _flat(x, y)
     _exact.powers(x.ravel(), y.ravel(), out.ravel())
     return out
 
 
 def atan2(y: npt.ArrayLike, x: npt.ArrayLike) -> Any:
-    """Angle of the vector (x, y), -π … π; 0 of no vector."""
+    """Angle of the vector (x, y), -π … π; 0 for the zero vector."""
     (x, y), out = _flat(x, y)
     _exact.angles(x.ravel(), y.ravel(), out.ravel())
     return out

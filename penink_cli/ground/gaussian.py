@@ -1,4 +1,7 @@
-"""A Gaussian low-pass that is scipy's, whose loading takes longer. This module alone imports the compiled kernel."""
+"""A Gaussian low-pass with scipy's results. Loading scipy would take longer than most pictures.
+
+This module alone imports the compiled kernel.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +16,7 @@ from penink_cli.ground.model import Floats
 
 
 def smoothed(grey: npt.NDArray[np.floating], sigma: float) -> npt.NDArray[np.float32]:
-    """Grey (h, w), of any range, without what is finer than sigma pixels; beyond its sides it goes on as it ends.
+    """Grey (h, w), of any range, low-passed by a Gaussian of sigma pixels; beyond its sides grey goes on as it ends.
 
     >>> smoothed(np.array([[0.0, 0.0, 0.0, 1.0]]), 0.25).round(3).tolist()
     [[0.0, 0.0, 0.0, 1.0]]
@@ -25,6 +28,6 @@ def smoothed(grey: npt.NDArray[np.floating], sigma: float) -> npt.NDArray[np.flo
 
 
 def weights(sigma: float) -> Floats:
-    """Weights of a Gaussian from the middle one to four deviations out; all, with their mirror images, sum to 1."""
+    """One half (n,) of a Gaussian out to four deviations, the middle weight first; both halves together sum to 1."""
     found = [float(exact.exp(-0.5 * (k / sigma) ** 2)) for k in range(int(4 * sigma + 0.5) + 1)]
     return np.array(found) / (found[0] + 2 * math.fsum(found[1:]))

@@ -1,6 +1,6 @@
-"""Masks of pixels: parts that hang together, and distances. This module alone imports the compiled kernel.
+"""Masks of pixels: connected parts, and distances. This module alone imports the compiled kernel.
 
-scipy has the same, and takes longer to load than a drawing's marks take to be found.
+scipy has the same, but loading it takes longer than all that these functions do for a drawing.
 """
 
 from __future__ import annotations
@@ -16,15 +16,15 @@ from penink_cli.ground.model import Floats, Ints
 
 Mask = npt.NDArray[np.bool_]
 
-_FEW = 60.0  # pixels: as far it is faster to look at all there are than for the nearest
-_BAND = 64  # rows of a task, whose numbers a processor's cache holds
+_FEW = 60.0  # pixels: up to this reach comparing all steps is faster than finding each pixel's nearest
+_BAND = 64  # rows of a task: the numbers of these a processor's cache holds
 
 
 def labelled(mask: Mask) -> tuple[npt.NDArray[np.int32], npt.NDArray[np.int32]]:
     """The number (h, w) of the part of the mask that each pixel is in, and each part's box (parts, 4).
 
-    Parts are numbered from 1 in the order of their first pixels, which touch at sides or corners; 0 is outside. A box
-    is its first row, one past the last, first column, one past the last.
+    Pixels of a part touch at sides or corners. Parts are numbered from 1 in the order of their first pixels; 0 is
+    outside. A box is the part's first row, the row past its last, its first column and the column past its last.
 
     >>> part, box = labelled(np.eye(3, 5, 2) > 0)
     >>> part.max(), box.tolist()
@@ -37,7 +37,9 @@ def labelled(mask: Mask) -> tuple[npt.NDArray[np.int32], npt.NDArray[np.int32]]:
 
 
 def sizes(part: npt.NDArray[np.int32], count: int, mask: Mask) -> Ints:
-    """How many pixels of the mask (h, w) are in each of so many parts, (count + 1,); before them those in none.
+    """How many pixels of the mask (h, w) are in each of `count` parts, (count + 1,); the first number is of no part.
+
+    part: (h, w) as of `labelled`.
 
     >>> sizes(labelled(np.eye(3, 5, 2) > 0)[0], 1, np.ones((3, 5), bool)).tolist()
     [12, 3]
@@ -48,7 +50,9 @@ def sizes(part: npt.NDArray[np.int32], count: int, mask: Mask) -> Ints:
 
 
 def distance(mask: Mask) -> Floats:
-    """From the middle of each pixel (h, w) of the mask to that of the nearest one outside, pixels; 0 outside.
+    """Distances (h, w) in pixels from each pixel of the mask to the nearest pixel outside, between their middles.
+
+    They are 0 outside the mask, and 1e300 where there is no pixel outside.
 
     >>> distance(np.array([[False, True, True]])).tolist()
     [[0.0, 1.0, 2.0]]
@@ -59,9 +63,10 @@ def distance(mask: Mask) -> Floats:
 
 
 def near(mask: Mask, reach: float, strictly: bool = False, threads: int = 1) -> Mask:
-    """Which pixels (h, w) are no further than `reach` from one outside the mask, `strictly`: nearer; those outside are.
+    """Which pixels (h, w) are no further than `reach` pixels from one outside the mask; all pixels outside are.
 
-    The same as `distance(mask) <= reach`, in a fraction of the time where that is a few pixels.
+    strictly: which are nearer than `reach`. The same as `distance(mask) <= reach`, or `<`, in a fraction of the time
+    where the reach is a few pixels.
 
     >>> near(np.array([[True, False, True, True, True]]), 1.0).tolist()
     [[True, True, True, False, False]]
@@ -87,7 +92,7 @@ def near(mask: Mask, reach: float, strictly: bool = False, threads: int = 1) -> 
 
 
 def part_at(mask: Mask, row: int, column: int) -> Mask:
-    """The part of the mask (h, w) that this pixel is in, of pixels that touch at their sides; nothing where it is out.
+    """The part of the mask (h, w) that a pixel is in, of pixels that touch at their sides; empty for a pixel outside.
 
     >>> part_at(np.array([[True, True, False, True]]), 0, 1).tolist()
     [[True, True, False, False]]
@@ -98,7 +103,7 @@ def part_at(mask: Mask, row: int, column: int) -> Mask:
 
 
 def filled(mask: Mask) -> Mask:
-    """The mask (h, w) without its holes: with all that no way over sides leads to from beyond.
+    """The mask (h, w) with its holes filled: pixels outside that no way over sides joins to the frame.
 
     >>> filled(np.array([[0, 1, 0], [1, 0, 1], [0, 1, 0]]) > 0).astype(int).tolist()
     [[0, 1, 0], [1, 1, 1], [0, 1, 0]]
@@ -112,7 +117,7 @@ def filled(mask: Mask) -> Mask:
 
 
 def opened(mask: Mask, radius: float) -> Mask:
-    """What discs of that radius (pixels) cover that lie in the mask (h, w) and its frame.
+    """The pixels of the mask (h, w) that are covered by discs of that radius (pixels) within the mask and the frame.
 
     >>> opened(np.array([[1, 0, 0, 0], [1, 0, 1, 0], [1, 1, 1, 1], [0, 0, 1, 0]]) > 0, 1.0).astype(int).tolist()
     [[0, 0, 0, 0], [0, 0, 1, 0], [0, 1, 1, 1], [0, 0, 1, 0]]
@@ -122,7 +127,7 @@ def opened(mask: Mask, radius: float) -> Mask:
 
 
 def grown(mask: Mask, steps: int) -> Mask:
-    """The mask (h, w) and what so many steps over sides lead to.
+    """The mask (h, w) and all pixels that at most so many steps over sides lead to.
 
     >>> grown(np.array([[True, False, False, False]]), 2).tolist()
     [[True, True, True, False]]

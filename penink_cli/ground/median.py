@@ -1,4 +1,4 @@
-"""Median, quantiles and distinct numbers as numpy has them, which loads masked arrays first, in 15 ms or more."""
+"""Median, quantile and distinct numbers. numpy's own functions load masked arrays first, which takes 15 ms or more."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 
 def median(values: npt.NDArray[Any], axis: int = -1) -> Any:
-    """The middle one of numbers along an axis, or the mean of the two in the middle; there is at least one, and no NaN.
+    """The middle number along an axis, or the mean of the two middle ones. There is at least one number, and no NaN.
 
     >>> float(median(np.array([3.0, 1.0, 9.0, 2.0])))
     2.5
@@ -21,7 +21,9 @@ def median(values: npt.NDArray[Any], axis: int = -1) -> Any:
 
 
 def quantile(values: npt.NDArray[Any], share: float) -> float:
-    """The number (n,) below which that share of them lies, linear in between; there is at least one, and no NaN.
+    """The number below which that share, 0 … 1, of the numbers (n,) lies, interpolated linearly.
+
+    There is at least one number, and no NaN.
 
     >>> quantile(np.array([3.0, 1.0, 9.0, 2.0]), 0.4)
     2.2

@@ -14,11 +14,16 @@ PAPERS = {
     "letter": (612.0, 792.0), "legal": (612.0, 1008.0), "tabloid": (792.0, 1224.0), "executive": (522.0, 756.0),
 }  # fmt: skip
 LIMIT = 1e6  # points; more than the biggest sheet of any of the formats
+_NUMBER = "0123456789."
 
 
 def plain_name(name: str) -> str:
-    """A paper's name or size in small letters, ``30x21cm`` of ``30 × 21 cm``."""
-    return name.lower().replace("×", "x").replace(" ", "")
+    """A paper's name or size in small letters and without white space.
+
+    >>> plain_name("30 × 21\\tcm")
+    '30x21cm'
+    """
+    return "".join(name.lower().replace("×", "x").split())
 
 
 def paper_size(name: str) -> tuple[float, float]:
@@ -34,8 +39,8 @@ def paper_size(name: str) -> tuple[float, float]:
     sides = plain_name(name).split("x")
     if len(sides) == 2:
         try:
-            if sides[0][-1:].isdigit():
-                sides[0] += sides[1].lstrip("0123456789.")
+            if not sides[0].strip(_NUMBER):
+                sides[0] += sides[1].lstrip(_NUMBER)
             width, height = map(parse_length, sides)
         except ParameterError:
             width = height = 0.0

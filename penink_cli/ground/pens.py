@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 
-#: On paper narrower than this, points, pens are finer, by the root of the width, though not below the least part nor
-#: below so many dots of the printer: what is drawn small needs a finer pen, not fewer lines.
+#: On a picture narrower than FULL points pens are finer, by the root of the width: what is drawn small needs a finer
+#: pen, not fewer lines. No pen is finer than LEAST of its width, or than DOTS dots of the printer.
 FULL, LEAST, DOTS = 288.0, 0.5, 1.5
 
 
 def part(width_pt: float) -> float:
-    """The part of their width that pens have on a print so wide; 1 from FULL on.
+    """The part of their usual width that pens have on a print of that width; 1 from FULL on.
 
     >>> [round(part(72 * inches), 3) for inches in (0.5, 1, 2, 4, 8)]
     [0.5, 0.5, 0.707, 1.0, 1.0]
@@ -19,6 +19,6 @@ def part(width_pt: float) -> float:
 
 
 def finer(pen_pt: float, by: float, device_dpi: float | None) -> float:
-    """That part of a pen, but no less than DOTS of the printer, and no more than the pen was."""
+    """The width of a pen times `by`, but no less than DOTS of the printer, and no more than the pen was, points."""
     least = DOTS * 72.0 / device_dpi if device_dpi else 0.0
     return min(max(by * pen_pt, least), pen_pt)

@@ -1,7 +1,7 @@
-"""What is made of the same things twice, made once: while a drawing follows its files.
+"""Results remembered while `draw --watch` draws again, so that nothing is made twice of the same things.
 
-`chain.kept` remembers what whole filters have made. In one that runs again most does not depend on what has changed:
-of a drawing with another pen the field is read alike, and telling lines and solid black lie where they lay.
+`chain.kept` remembers what whole filters have made. Most of the work of a filter that runs again does not depend on
+what has changed either: with another pen the field is read alike, and telling lines and solid black stay in place.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from typing import Any, TypeVar
 
 T = TypeVar("T")
 
-#: Results of one name that are remembered: as many as a drawing has plates.
+#: How many results of one name are remembered: more than a drawing has plates.
 MOST = 8
 
 _made: list[dict[str, dict[bytes, Any]]] = []
@@ -20,7 +20,7 @@ _made: list[dict[str, dict[bytes, Any]]] = []
 
 @contextmanager
 def remembering() -> Iterator[None]:
-    """While the block runs, `recalled` remembers."""
+    """Let `recalled` remember results while the block runs."""
     _made.append({})
     try:
         yield
@@ -29,13 +29,13 @@ def remembering() -> Iterator[None]:
 
 
 def recalled(name: str, told: tuple[Any, ...], make: Callable[[], T]) -> T:
-    """What `make` makes of what it is told, or has made of the same: nobody may change it.
+    """What `make` returns, or what it returned before for the same name and `told`. The caller must not change it.
 
-    name: of what is made. told: all that the result depends on, told by its contents.
+    name: of what is made. told: all that the result depends on; it is compared by its contents.
     """
     if not _made:
         return make()
-    import pickle  # a drawing that follows nothing does without
+    import pickle  # not loaded where nothing is remembered
     from hashlib import blake2b
 
     known = _made[-1].setdefault(name, {})
@@ -44,7 +44,7 @@ def recalled(name: str, told: tuple[Any, ...], make: Callable[[], T]) -> T:
         result = known.pop(key)
     else:
         result = make()
-    known[key] = result  # the last one used is the last one to go
+    known[key] = result  # at the end: the result that has not been used for longest is the first to go
     if len(known) > MOST:
         del known[next(iter(known))]
     return result

@@ -1,6 +1,6 @@
 """The rules by which strokes are chosen.
 
-A line here and its module in `blasting/rules/` make a rule.
+A rule is a line here and its module in `blasting/rules/`.
 """
 
 #: Name -> what it does, for the help text.

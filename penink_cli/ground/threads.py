@@ -1,4 +1,4 @@
-"""Work shared among threads: the compiled loops let go of Python's lock, so plain threads are enough."""
+"""Work shared among threads. The compiled loops let go of Python's lock, so plain threads are enough."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from typing import TypeVar
 
 T = TypeVar("T")
 
-_most: list[int | None] = [None]  # threads that may be used where nobody says how many
+_most: list[int | None] = [None]  # how many threads `count` says where it is given no number
 
 
 def count(threads: int | None) -> int:
-    """How many threads to use: as many as asked for, else one for each processor this process may use."""
+    """How many threads to use: as many as asked for, else as `limit` says, else one a processor of this process."""
     if threads is not None:
         return max(1, threads)
     if _most[0] is not None:
@@ -23,13 +23,13 @@ def count(threads: int | None) -> int:
 
 
 def limit(threads: int | None) -> int | None:
-    """Let `count` say so many where it is not told a number, one a processor for None; what it said before."""
+    """Set how many threads `count` says where it is given no number, None for one a processor; the former setting."""
     before, _most[0] = _most[0], threads
     return before
 
 
 def share(tasks: Sequence[Callable[[], object]], threads: int) -> None:
-    """Run every task, each once, whoever comes first takes the next; an exception is raised here."""
+    """Run every task once, each by the first thread that is free. An exception of a task is raised here."""
     if threads <= 1 or len(tasks) <= 1:
         for task in tasks:
             task()
@@ -39,14 +39,15 @@ def share(tasks: Sequence[Callable[[], object]], threads: int) -> None:
 
 
 def ranges(work: Callable[[int, int], object], total: int, size: int) -> list[Callable[[], object]]:
-    """One task `work(begin, end)` for each piece of 0 … total of at most the given size."""
+    """Tasks `work(begin, end)` for pieces of 0 … total, each of at most the given size."""
     return [partial(work, k, min(k + size, total)) for k in range(0, total, size)]
 
 
 def in_order(tasks: Iterator[Callable[[], T]], threads: int, ahead: int | None = None) -> Iterator[T]:
     """Results in the order of the tasks, computed by several threads, at most `ahead` of them waiting.
 
-    The caller's own thread works too, so that two threads cost one start.
+    The caller's own thread works too, so that two threads cost one start. Where the system lets no further thread start
+    the others do its work. An exception of a task, or of the iterator of tasks, is raised here.
     """
     if threads <= 1:
         for task in tasks:
@@ -69,6 +70,11 @@ def in_order(tasks: Iterator[Callable[[], T]], threads: int, ahead: int | None =
             try:
                 task = next(tasks)
             except StopIteration:
+                finished = True
+                lock.notify_all()
+                return None
+            except BaseException as error:
+                failed.append(error)
                 finished = True
                 lock.notify_all()
                 return None
@@ -98,10 +104,15 @@ def in_order(tasks: Iterator[Callable[[], T]], threads: int, ahead: int | None =
         while work(wait=True):
             pass
 
-    others = [threading.Thread(target=labour, daemon=True) for _ in range(threads - 1)]
-    for other in others:
-        other.start()
+    others: list[threading.Thread] = []
     try:
+        for _ in range(threads - 1):
+            other = threading.Thread(target=labour, daemon=True)
+            try:
+                other.start()
+            except RuntimeError:  # too many processes, or no memory for a stack
+                break
+            others.append(other)
         while True:
             while delivered not in ready and work(wait=False):
                 pass

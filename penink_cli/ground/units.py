@@ -20,7 +20,7 @@ def parse_length(text: str, dpi: float | None = None) -> float:
     >>> parse_length("300px", dpi=300)
     72.0
 
-    Raises ParameterError for anything else.
+    Raises ParameterError for any other text, and for a length that is no finite number.
     """
     match = _LENGTH.fullmatch(text.strip())
     if not match:

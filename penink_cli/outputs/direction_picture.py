@@ -8,9 +8,9 @@ from penink_cli.formats.strokes import Sink
 from penink_cli.ground.model import Directions, GreyImage
 from penink_cli.outputs.edge_picture import pale_photo
 
-# Lines by confidence, from what is not known to what is sure: least confidence, colour.
+# Lines are coloured by confidence, from unknown to sure: the least confidence of each class, and its colour.
 CLASSES = ((0.0, "#f1932d"), (0.25, "#b997c7"), (0.5, "#4c72c4"), (0.75, "#12357a"))
-_LENGTH, _PEN = 0.9, 0.16  # of the distance of the lines
+_LENGTH, _PEN = 0.9, 0.16  # in parts of the distance between the middles of lines
 
 
 def write(out: Sink, photo: GreyImage, directions: Directions, scale: float) -> None:
@@ -21,7 +21,7 @@ def write(out: Sink, photo: GreyImage, directions: Directions, scale: float) -> 
     height, width = photo.values.shape
     rows, columns = directions.cos2.shape
     out.write(pale_photo(photo, width, height, scale).encode())
-    # half the angle: its cosine is not negative
+    # cosine and sine of half the angle; the half between -90° and 90° is taken, whose cosine is not negative
     cosine = np.sqrt(np.maximum(0, (1 + directions.cos2.astype(np.float64)) / 2))
     sine = np.copysign(np.sqrt(np.maximum(0, (1 - directions.cos2.astype(np.float64)) / 2)), directions.sin2)
     reach = _LENGTH / 2 * min(width / columns, height / rows)

@@ -11,16 +11,17 @@ import numpy.typing as npt
 from penink_cli.formats.strokes import Sink
 from penink_cli.ground.model import EdgeList, GreyImage
 
-# Edges by strength, from faint to strong: least strength, colour.
+# Edges are coloured by strength, from faint to strong: the least strength of each class, and its colour.
 CLASSES = ((0.0, "#7bafde"), (0.1, "#1965b0"), (0.2, "#f1932d"), (0.4, "#dc050c"))
-CONTAMINATED = (255, 214, 90, 110)
+CONTAMINATED = (255, 214, 90, 110)  # red, green, blue, opacity
 _PALE = 0.45  # how much of the photo's contrast is left under the drawing
 
 
 def write(out: Sink, photo: GreyImage, edges: EdgeList, contaminated: npt.NDArray[np.bool_], scale: float) -> None:
     """Draw photo, contaminated pixels, edges, junctions and open ends.
 
-    photo: values (h, w); contaminated: (h, w). scale: size of a photo pixel in CSS pixels.
+    contaminated: (h, w) of the photo's size, see `reconstruction/extraction.py`. scale: size of a photo pixel in CSS
+    pixels.
     """
     width, height = edges.width, edges.height
     out.write((pale_photo(photo, width, height, scale) + _image(_overlay(contaminated), width, height)).encode())

@@ -20,15 +20,16 @@ BLACK: Colour = (0.0, 0.0, 0.0)
 
 
 def overprint(colours: Sequence[Colour]) -> bool:
-    """Whether there are several inks, so that it matters that they are transparent."""
+    """Whether the colours are of several inks, so that it matters that inks are transparent."""
     return len(set(colours)) > 1
 
 
 def pixels(
     covers: Sequence[Iterator[npt.NDArray[np.uint8]]], colours: Sequence[Colour], maxval: int
 ) -> Iterator[npt.NDArray[np.uint8]]:
-    """Bands (rows, width, 3) of sRGB, 8 bits, of inks whose bands (rows, width) say how much paper, 0 … maxval, each
-    leaves bare.
+    """Bands (rows, width, 3) of sRGB, 8 bits, of inks printed over one another, from the top.
+
+    covers: of each ink bands (rows, width) of the paper that it leaves bare, 0 … maxval. colours: of the inks.
     """
     bare = np.arange(maxval + 1)[:, None] / maxval
     passed = [bare + (1.0 - bare) * linear(colour) for colour in colours]

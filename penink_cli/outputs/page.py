@@ -1,7 +1,8 @@
-"""The page that strokes are put on: its size, where the sheet of strokes lies, what room the ink takes."""
+"""The page that strokes are put on: its size, where the sheet of strokes lies on it, how far the ink reaches."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -17,7 +18,8 @@ from penink_cli.ground.papers import LIMIT, PAPERS, paper_size, plain_name
 class Page:
     """A page of width × height points; the sheet's top-left corner lies at x, y (y down).
 
-    paper: the name of the paper, None for a page that is as large as its sheet.
+    paper: the name or size of the paper, None for a page as large as the sheet and its margins. landscape: the paper's
+    longer side lies across.
     """
 
     width: float
@@ -34,9 +36,12 @@ def lay_out(
 ) -> Page:  # fmt: skip
     """Put the sheet, at its own size, in the middle of the paper, or on a page that leaves a margin around it.
 
-    margin: points. landscape turns the paper's longer side across; without it a paper lies upright that has a name, and
-    one of a size as that is written. at: x and y of the sheet's top-left corner on the page.
-    Raises ParameterError where the sheet and the margins are larger than the paper.
+    layers: at least one; the sheet is as large as the largest of theirs. paper: a name or a size, None for a page of
+    the sheet's size. margin: points. landscape: the paper's longer side lies across; else a paper given by name stands
+    upright, and one given by size is as wide and high as the size says. at: x and y, in points, of the sheet's top-left
+    corner on the page.
+
+    Raises ParameterError for a paper that is not known, and where sheet and margins are larger than the paper.
     """
     width, height = max(s.width for s in layers), max(s.height for s in layers)
     x, y = at or (margin, margin)
@@ -52,7 +57,9 @@ def lay_out(
         room_x, room_y = page_width - x - margin, page_height - y - margin
     if width > room_x + 0.01 or height > room_y + 0.01:
         scale = min(room_x / width, room_y / height)
-        advice = f"blast it {width * scale / 72:.2f}in wide or less" if scale > 0.01 else "the margin leaves no room"
+        # rounded down, so that a picture of that width fits
+        most = math.floor(width * scale / 72 * 100 + 1e-6) / 100
+        advice = f"blast it {most:.2f}in wide or less" if scale > 0.01 else "the margin leaves no room"
         size = f"{width / 72:.2f} x {height / 72:.2f} in"
         room = f"{max(room_x, 0) / 72:.2f} x {max(room_y, 0) / 72:.2f} in"
         raise ParameterError(f"the picture, {size}, is larger than {paper} less its margins, {room}: {advice}")
@@ -62,7 +69,7 @@ def lay_out(
 
 
 def turned_paper(paper: str, landscape: bool) -> tuple[float, float]:
-    """Width and height of a paper as it is to lie."""
+    """Width and height, points, of a paper as it is to lie; see `lay_out`. Raises ParameterError."""
     width, height = paper_size(paper)
     if landscape:
         return max(width, height), min(width, height)
@@ -70,14 +77,17 @@ def turned_paper(paper: str, landscape: bool) -> tuple[float, float]:
 
 
 def ink_box(strokes: Strokes) -> tuple[float, float, float, float] | None:
-    """x0, y0, x1, y1 of a box that holds all ink of these strokes (y down); it is no larger than their curves reach."""
+    """x0, y0, x1, y1 of the least box that holds all ink of the strokes (y down); None for no strokes.
+
+    Where widths change, the box may be larger than the ink by part of a width.
+    """
     if not len(strokes):
         return None
     half = _radii(strokes)[:, None]
     number = np.arange(len(strokes.points)) - np.repeat(strokes.first[:-1], np.diff(strokes.first))
     knot = number % 3 == 0
     low, high = (strokes.points - half)[knot].min(axis=0), (strokes.points + half)[knot].max(axis=0)
-    # Most curves lie within that. Of the others, only what lies beyond matters.
+    # Most curves lie within the box of all knots' discs. Only those that reach beyond it are looked at closely.
     beyond = ((strokes.points - half < low) | (strokes.points + half > high)).any(axis=1) & ~knot
     last = distinct(np.flatnonzero(beyond) + 3 - number[beyond] % 3)
     if len(last):
@@ -90,7 +100,7 @@ def ink_box(strokes: Strokes) -> tuple[float, float, float, float] | None:
 
 
 def _turning_points(curves: Floats) -> Floats:
-    """Where cubic curves (n, 4, 2) turn back along x and along y, and where they begin and end: (n, 4, 2)."""
+    """Points (n, 4, 2) of cubic curves (n, 4, 2): where they turn back along x or y, and both ends."""
     p0, p1, p2, p3 = np.moveaxis(curves, 1, 0)
     a, b, c = p3 - p0 + 3 * (p1 - p2), 2 * (p0 - 2 * p1 + p2), p1 - p0  # a t² + b t + c = 0
     root = np.sqrt(np.maximum(b * b - 4 * a * c, 0.0))
@@ -103,8 +113,9 @@ def _turning_points(curves: Floats) -> Floats:
 
 
 def _radii(strokes: Strokes) -> Floats:
-    """Half the width at each control point (p,), those between two knots having their share of either's: as a Bézier
-    curve lies within its control points, so do its discs within these.
+    """Half the width at each control point (p,), interpolated between knots.
+
+    A Bézier curve lies within the hull of its control points. So do the discs along it within the hull of these discs.
     """
     if strokes.knot_widths is None:
         return np.repeat(strokes.widths / 2, np.diff(strokes.first))

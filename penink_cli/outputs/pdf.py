@@ -1,6 +1,6 @@
 """Strokes as PDF: one page of vector paths, layers as optional content that viewers can switch.
 
-The objects and the cross-reference table are pydyf's work. No date, no identifier: equal
+pydyf writes the objects and the cross-reference table. There is no date and no identifier, so equal
 strokes give equal bytes.
 """
 
@@ -35,8 +35,8 @@ OPTIONS = (
     Option("trim", "Say that the sheet is cut to the picture: a trim box.", False),
 )
 DECIMALS = 3  # of a point
-OUTLINE_DECIMALS = 2  # of outlines, in whole numbers of these
-MOST = 14400  # a side of a page in user-space units, beyond which viewers differ
+OUTLINE_DECIMALS = 2  # of a point: outlines are written in whole hundredths
+MOST = 14400  # user-space units: viewers differ about longer sides of a page
 
 
 def write(
@@ -45,9 +45,9 @@ def write(
 ) -> None:  # fmt: skip
     """Write a PDF 1.5 file; the first layer is at the bottom. Colours: red, green, blue (0 … 1) of each layer.
 
-    Where there are several, a layer is a group that is multiplied with what lies below: its ink is transparent, but its
-    own strokes do not darken where they cross. title, author: nothing is said of them where they are empty. trim: with
-    a trim box around the sheet.
+    Where there are several colours, a layer is a group that is multiplied with what lies below: its ink is transparent,
+    but its own strokes do not darken one another where they cross. title, author: left out where empty. trim: with a
+    trim box around the sheet.
     """
     import pydyf
 
@@ -125,7 +125,7 @@ def _stream(content: list[bytes], entries: dict[str, object]) -> Any:
 
 
 def _paths(layer: Strokes, page: Page) -> list[bytes]:
-    """The operators that draw a layer, each stroke by itself, the pen set where it changes."""
+    """The operators that draw a layer, each stroke by itself; the width of the pen is set where it changes."""
     import numpy as np
 
     from penink_cli.outputs import words
@@ -145,7 +145,7 @@ def _paths(layer: Strokes, page: Page) -> list[bytes]:
     after[inner == 0, 1] = 1
     after[(inner > 0) & (inner % 3 == 0), 1] = 2
     pens, pen = np.unique(words.whole(layer.widths * 10000), return_inverse=True)
-    # What ends a stroke names the next one's pen, if that is another.
+    # The word that ends a stroke sets the pen of the next stroke, if that is another pen.
     follows = np.append(pen[1:], pen[-1])
     switch = np.where(follows == pen, 0, 1 + follows)
     table = [b" ", b" m\n", b" c\n", *(b" c S\n" + w for w in _pens(pens)), *(b" l S\n" + w for w in _pens(pens))]
@@ -157,7 +157,7 @@ def _paths(layer: Strokes, page: Page) -> list[bytes]:
 
 
 def _outlines(strokes: Strokes, page: Page) -> bytes:
-    """The operators that fill the outlines of strokes that swell, each told from where it begins."""
+    """The operators that fill the outlines of strokes that swell, in coordinates relative to where each begins."""
     import numpy as np
 
     from penink_cli.outputs import swelling, words
@@ -180,5 +180,5 @@ def _outlines(strokes: Strokes, page: Page) -> bytes:
 
 
 def _pens(pens: np.ndarray) -> list[bytes]:
-    """Nothing, then what sets each pen."""
+    """The operators that set the pens (in ten-thousandths of a point); before them one that does nothing."""
     return [b"", *(plain(p / 10000, 4).encode() + b" w\n" for p in pens.tolist())]

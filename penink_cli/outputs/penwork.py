@@ -13,14 +13,18 @@ from penink_cli.ground.colour import lab_of_light, linear
 from penink_cli.ground.model import Strokes
 from penink_cli.travel import clock
 
-#: An AxiDraw's top speed, mm/s, which a layer's name gives in parts of 110.
+#: An AxiDraw's top speed, mm/s, and the number that stands for it in a layer's name.
 TOP_SPEED = 8.6979 * 25.4
 SPEED_PARTS = 110
 
 
 @dataclass(frozen=True, eq=False)
 class Load:
-    """What is drawn without a pause: strokes, the pen, and whether the plotter waits for a hand before."""
+    """Strokes that are drawn without a pause.
+
+    pen: that draws them, None where no pens are named. waits: the plotter waits for a hand before. part: the load's
+    number among the loads of its pen, from 1, and how many these are.
+    """
 
     strokes: Strokes
     pen: Pen | None = None
@@ -28,9 +32,8 @@ class Load:
     part: tuple[int, int] = (1, 1)
 
     def label(self, number: int, fallback: str | None) -> str:
-        """The layer's name: its number first, for vpype and for an AxiDraw, then what an AxiDraw does before.
-
-        ``!`` is a pause, ``+S`` the speed of the pen when it is down.
+        """The name of the load's layer: for an AxiDraw ``!``, a pause before it; the number, for vpype and an AxiDraw;
+        for an AxiDraw ``+S`` and the speed of the pen when it is down; the pen's name, or else the fallback.
         """
         name = fallback if self.pen is None else self.pen.name
         if self.part[1] > 1:
@@ -45,7 +48,7 @@ class Load:
 def by_pen(layers: Sequence[Strokes], pens: Sequence[Pen]) -> list[tuple[Strokes, Pen]]:
     """All strokes, each with the pen of the nearest colour and, of those, the nearest width; pen after pen.
 
-    Within a pen strokes keep their order. They become as wide as the pen.
+    The strokes of a pen keep their order, and become as wide as the pen. layers, pens: at least one.
     """
     shades = lab_of_light(linear(np.array([of_code(pen.color) for pen in pens])))
     widths = np.array([pen.width for pen in pens])
@@ -68,9 +71,9 @@ def by_pen(layers: Sequence[Strokes], pens: Sequence[Pen]) -> list[tuple[Strokes
 
 
 def loads(strokes: Strokes, pen: Pen | None, most: float | None, first: bool) -> list[Load]:
-    """The strokes in loads of the pen: no longer than `most`, or what the pen holds.
+    """The strokes in loads no longer than `most`, or else than the pen's ink lasts, points; None for no limit.
 
-    first: nothing was drawn before, so that there is nothing to wait for.
+    first: nothing has been drawn before, so that the first load need not wait.
     """
     length = most if most is not None else pen.refill if pen is not None else None
     groups = [strokes] if length is None else clock.split(strokes, length)
@@ -81,5 +84,5 @@ def loads(strokes: Strokes, pen: Pen | None, most: float | None, first: bool) ->
 
 
 def merged(strokes: Strokes) -> Strokes:
-    """The strokes with those of one width together, the finest first, in their order."""
+    """The strokes ordered by width, the finest first; those of one width keep their order."""
     return strokes.taken(np.argsort(strokes.widths, kind="stable"))

@@ -1,6 +1,7 @@
 """Strokes as PostScript: EPS by the Document Structuring Conventions, or a page for a printer.
 
-The structure of the page is here; the arrays of numbers that fill it, and what draws them, are `postscript_arrays`.
+The structure of the page is here. The arrays of numbers that fill it, and the procedures that draw these, are in
+`postscript_arrays`.
 """
 
 from __future__ import annotations
@@ -29,9 +30,10 @@ def write(
     """Write one EPS, or, where the page is a paper, one page for a printer.
 
     layers: the first at the bottom. colours: red, green, blue (0 … 1) of each layer; black if there is none.
+    compress: the arrays are deflated, which needs a Level 3 interpreter.
     order: brings each run first[g] … first[g + 1] - 1 of strokes into an order with short ways between them.
-    separations: a plate a page: each layer by itself, and in black. The page is a paper.
-    with_preview: an EPS has a preview, for programs that run no PostScript.
+    separations: every layer is a page by itself, and black. The page must be a paper.
+    with_preview: the EPS has a preview, for programs that run no PostScript.
     """
     head = _write_head(out, layers, page, compress, len(layers) if separations else 1)
     if with_preview:
@@ -55,7 +57,7 @@ def _write_page(
     out: Sink, layers: Sequence[tuple[int, Strokes]], page: Page, units: int,
     colours: Sequence[tuple[float, float, float]], compress: bool, order: Order,
 ) -> None:  # fmt: skip
-    """The layers, each with its number, on a page of their own."""
+    """One page: the layers on it, each with its number. units: whole numbers of the arrays to a point."""
     # The position starts at the sheet's top-left corner; y is turned up only here.
     out.write(b"gsave penink begin\n1 setlinecap 1 setlinejoin [] 0 setdash\n")
     if page.landscape:
@@ -82,7 +84,7 @@ def _write_page(
 def _write_head(
     out: Sink, layers: Sequence[Strokes], page: Page, compress: bool, pages: int
 ) -> tuple[int, int, int, int]:
-    """The comments at the beginning; the bounding box."""
+    """Write the comments at the beginning; returns the bounding box in whole points, y up."""
     x0, y0, x1, y1 = 0.0, 0.0, page.width, page.height
     if page.paper:  # what is printed on the paper, not the paper
         x0, y0 = page.x, page.y
@@ -131,7 +133,7 @@ def _write_prolog(out: Sink, layers: Sequence[Strokes], page: Page, compress: bo
 
 
 def _ascii85(text: bytes) -> bytes:
-    """Deflated, and in printable characters on lines of 240; none begins with %."""
+    """The text deflated, in printable characters, on lines of 240 of which none begins with %."""
     import base64
     import zlib
 
@@ -144,7 +146,7 @@ def _ascii85(text: bytes) -> bytes:
 
 
 def _text(name: str) -> bytes:
-    """A string of the structuring conventions: 7 bits, one line, at most 80 characters of the name."""
+    """At most 80 characters of a name as a string of the structuring conventions: 7 bits, one line."""
     coded = b""
     for byte in name[:80].encode("utf-8", "replace"):
         if byte in b"()\\" or not 32 <= byte < 127:

@@ -39,9 +39,9 @@ CHAIN = 200  # segments; Level 1 interpreters hold 1500 elements in a path
 NUMBERS = 400  # in an array
 SEGMENT = {"d": 0, "l": 2, "b": 4, "c": 6}  # numbers a segment, by the kind of stroke
 
-# Names of one letter are what keeps the file small; the dictionary is our own.
-# e: dx dy, a new position; m: the same, and a path begins there; a: {…} k n, does `p` (set before)
-# with the n numbers of each segment of each stroke.
+# Names of one letter keep the file small. They are in a dictionary of the file's own.
+# dx dy e: a new position. dx dy m: the same, and a path begins there. {…} k n a: does `p`, which has been set, with the
+# n numbers of each segment of each stroke of k segments.
 PROLOG = b"""\
 /penink 80 dict def
 penink begin
@@ -71,7 +71,7 @@ penink begin
 # shapes meet they have an edge in common. The sides are those of `swelling`, but at right angles to the curve: from
 # x + X, y + Y to x + u + U, y + v + V on the left, and on the right from x + u − U … back. h and Z are the radius at
 # both ends, i j and f g a third of the directions there, H and J what the bend takes from the control points' lean.
-# O: x y, a disc. P: a b, at least 0 of a - b.
+# x y O: a disc. a b P: a - b, or 0 where that is below 0.
 SWELLING = b"""\
 /O {h 0 gt {2 copy exch h add exch moveto h 360 0 arcn closepath} {pop pop} ifelse} bind def
 /P {sub dup 0 lt {pop 0} if} bind def
@@ -105,7 +105,7 @@ SWELLING = b"""\
 
 
 def units_of(layers: Sequence[Strokes]) -> int:
-    """Whole numbers a point: more than UNITS only for pens so fine that half of one would be lost."""
+    """How many units of the arrays go to a point: more than UNITS only for pens so fine that a unit is half of one."""
     finest = min((float(s.widths.min()) for s in layers if len(s)), default=1.0)
     return min(max(UNITS, math.ceil(2 / finest)), 2000)
 
@@ -113,7 +113,7 @@ def units_of(layers: Sequence[Strokes]) -> int:
 def written(
     strokes: Strokes, units: int, at: tuple[int, int], order: Order
 ) -> tuple[list[bytes], tuple[int, int]]:
-    """The arrays of one layer, beginning with the pen at ``at``, and where it is left."""
+    """The arrays of one layer, beginning with the pen at ``at``, and where the pen is left, in units."""
     parts: list[bytes] = []
     swells = strokes.swells
     if swells.any():
@@ -128,14 +128,14 @@ def written(
 
 
 def number(value: float, decimals: int = 3) -> bytes:
-    """A number as PostScript's bytes."""
+    """A number as PostScript has it."""
     return plain(value, decimals).encode("ascii")
 
 
 def _even(groups: Groups, units: int, at: tuple[int, int]) -> tuple[list[bytes], tuple[int, int]]:
-    """Groups of strokes as arrays, each pen named where it changes; and where the last stroke ends.
+    """The arrays of groups of strokes, the pen set where it changes, and where the last stroke ends, in units.
 
-    A group may be of a single stroke and there may be a thousand, so all their numbers become text in one go.
+    There may be a thousand groups of a single stroke, so the numbers of all groups become text in one go.
     """
     strokes, begins, sizes = groups.strokes, groups.first[:-1], np.diff(groups.first)
     same = list(zip(groups.kinds, groups.segments))
@@ -170,9 +170,10 @@ def _even(groups: Groups, units: int, at: tuple[int, int]) -> tuple[list[bytes],
 
 
 def _breaks(rank: Ints, length: int, step: int, full: int) -> npt.NDArray[np.int32]:
-    """What follows each number of strokes of so many: a line ends after each stroke, or segment of a long one.
+    """The word (s, length) that follows each number of strokes of `length` numbers.
 
-    rank: of each stroke in its group. full: what follows an array of some 400 numbers.
+    A line ends after each stroke, or each segment of a long stroke. rank: (s,) the number of each stroke in its group.
+    step: numbers a segment. full: the word that follows an array of some 400 numbers.
     """
     after = np.zeros((len(rank), length), np.int32)
     if length > 24:
@@ -186,12 +187,13 @@ def _breaks(rank: Ints, length: int, step: int, full: int) -> npt.NDArray[np.int
 def _swelling(
     strokes: Strokes, units: int, at: tuple[int, int], order: Order
 ) -> tuple[Ints, Ints, tuple[int, int]]:
-    """The numbers of strokes that swell, where each stroke's begin, and where the last one ends."""
+    """The numbers of strokes that swell, where each stroke's numbers begin, and where the last one ends, in units."""
 
-    def plain(points: Floats) -> npt.NDArray[np.bool_]:
+    def writable(points: Floats) -> npt.NDArray[np.bool_]:
+        """Whether segments (m, 4, 2) bend so that two numbers tell it, or are too short for it to matter."""
         return (_bends(points * units)[1] < 3) | (length_of(points[:, 3] - points[:, 0]) * units < 8)
 
-    strokes = swelling.pieces(strokes, plain, CHAIN)
+    strokes = swelling.pieces(strokes, writable, CHAIN)
     strokes = order(strokes, np.array([0, len(strokes)]))
     segments = np.diff(strokes.first) // 3
     knots = words.whole(strokes.points[_knot_places(strokes)] * (units, -units))
@@ -200,17 +202,17 @@ def _swelling(
     ways = np.diff(knots, axis=0, prepend=0)
     kept = (ways != 0).any(axis=1)  # a segment that goes nowhere is left out
     kept[starts] = True
-    number = np.flatnonzero(kept)
-    owner = np.repeat(np.arange(len(strokes)), segments + 1)[number]
+    used_knots = np.flatnonzero(kept)
+    owner = np.repeat(np.arange(len(strokes)), segments + 1)[used_knots]
     begins = np.concatenate([[True], owner[1:] != owner[:-1]])
-    rows = np.zeros((len(number), 5), np.int64)
-    rows[:, :2] = np.diff(knots[number], axis=0, prepend=[at])
-    rows[:, 4] = np.diff(widths[number], prepend=0)
-    after = number[~begins]
+    rows = np.zeros((len(used_knots), 5), np.int64)
+    rows[:, :2] = np.diff(knots[used_knots], axis=0, prepend=[at])
+    rows[:, 4] = np.diff(widths[used_knots], prepend=0)
+    after = used_knots[~begins]
     into = _knot_places(strokes)[after]
     exact = strokes.points[into[:, None] + np.arange(-3, 1)] * (units, -units)
     rows[~begins, 2:4], _ = _bends(exact)
-    rows[begins, 2] = widths[number[begins]]
+    rows[begins, 2] = widths[used_knots[begins]]
     rows[begins, 3] = np.bincount(owner, minlength=len(strokes)) - 1
     used = np.ones(rows.shape, bool)
     used[begins, 4] = False
@@ -220,7 +222,7 @@ def _swelling(
 
 
 def _knot_places(strokes: Strokes) -> Ints:
-    """Where the knots are among the points."""
+    """The place of each knot among the points, (n,)."""
     segments = np.diff(strokes.first) // 3
     return np.repeat(strokes.first[:-1] - 3 * strokes.knots[:-1], segments + 1) + 3 * np.arange(strokes.knots[-1])
 
@@ -238,9 +240,9 @@ def _ragged(numbers: Ints, first: Ints) -> memoryview:
 
 @dataclass(frozen=True, eq=False)
 class Groups:
-    """Strokes of one pen, kind and number of segments together, there being g groups of them.
+    """Strokes in groups of one pen, one kind and one number of segments.
 
-    first: (g + 1,) where each group begins among the strokes. kinds, segments: of each group.
+    first: (g + 1,) where each group begins among the strokes. kinds, segments: of each group; see `SEGMENT`.
     """
 
     strokes: Strokes
@@ -250,7 +252,7 @@ class Groups:
 
 
 def _groups(strokes: Strokes, units: int) -> Groups:
-    """The strokes, at least one, in their groups."""
+    """The strokes, at least one, sorted into groups."""
     counts = np.diff(strokes.first)
     segments = (counts - 1) // 3
     owner = np.repeat(np.arange(len(strokes)), segments)
@@ -266,7 +268,7 @@ def _groups(strokes: Strokes, units: int) -> Groups:
 
 
 class _Grid:
-    """Strokes on whole numbers, y up: exact, grid: their points (p, 2); bends: of each segment, as p and q."""
+    """Strokes in units, y up. exact: their points (p, 2); grid: these in whole numbers; bends: p and q of segments."""
 
     def __init__(self, strokes: Strokes, units: int, bent: bool):
         self.first = strokes.first
@@ -277,8 +279,9 @@ class _Grid:
             self.bends, _ = _bends(self.exact[_segments(strokes)[:, None] + np.arange(4)])
 
     def rows(self, kind: str, k: int, own: Ints) -> tuple[Ints, Ints]:
-        """What the arrays of strokes `own` (s,) of k segments hold, a row each, two columns still empty; x, y of both
-        ends (s, 4).
+        """The numbers of strokes `own` (s,) of k segments, a row each, and x, y of both ends of each (s, 4).
+
+        The first two columns, the way to the stroke, are left empty.
         """
         first = self.first[own]
         knots = self.grid[first[:, None] + 3 * np.arange(k + 1)]
@@ -296,17 +299,18 @@ class _Grid:
 
 
 def _segments(strokes: Strokes) -> Ints:
-    """Where each segment of all strokes begins among their points."""
+    """The place among the points at which each segment of all strokes begins."""
     counts = np.diff(strokes.first) // 3
     first = np.repeat(strokes.first[:-1] - 3 * (np.cumsum(counts) - counts), counts)
     return np.asarray(first + 3 * np.arange(len(first)))
 
 
 def _bends(segments: Floats) -> tuple[Ints, Ints]:
-    """How far inner control points (s, 4, 2) lie to the left of the chord, as p and q (s, 2), and the kind of each.
+    """Of segments (s, 4, 2) in units: how far the inner control points lie to the left of the chord, as p and q (s, 2),
+    and the kind (s,).
 
-    Kind 1 is straight, 2 bends, 3 is neither: sliding its control points along the chord to a third and two
-    thirds would move its ink by more than a unit.
+    Kind 1 is straight, kind 2 bends. Kind 3 is any other: sliding the control points along the chord to a third and two
+    thirds would move the ink by more than a unit.
     """
     chord = segments[:, 3] - segments[:, 0]
     length = length_of(chord)
@@ -325,7 +329,7 @@ def _bends(segments: Floats) -> tuple[Ints, Ints]:
 
 
 def _split(strokes: Strokes) -> Strokes:
-    """Strokes of more than CHAIN segments in pieces; round caps make that invisible."""
+    """The strokes with those of more than CHAIN segments in pieces, which round caps join invisibly."""
     counts = np.diff(strokes.first)
     if counts.max(initial=0) <= 3 * CHAIN + 1:
         return strokes

@@ -1,7 +1,7 @@
-"""What an EPS shows in programs that run no PostScript: a small grey picture in its comments (EPSI).
+"""The preview of an EPS, for programs that run no PostScript: a small grey picture in its comments (EPSI).
 
-By Adobe's EPS specification, section 6: pixels fill the bounding box from its top-left corner, a byte each, 0 is white
-and 255 black, written as hexadecimal digits behind a %.
+By Adobe's EPS specification, section 6: pixels fill the bounding box from its top-left corner, a byte each, 0 for white
+and 255 for black, in hexadecimal digits after a %.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from penink_cli.outputs.page import Page
 from penink_cli.outputs.raster import cover
 
 BYTES = 40  # of the picture on a line
-SIDE = 1000  # pixels at the most: of larger pictures a pixel is more than a point
+SIDE = 1000  # most pixels of a side: in larger pictures a pixel is more than a point
 
 
 def comments(
@@ -25,7 +25,7 @@ def comments(
 ) -> Iterator[bytes]:  # fmt: skip
     """The lines of the preview. page: where the sheet lies. box: the EPS's bounding box, in whole points, y up.
 
-    colours: red, green and blue (0 … 1) of each layer, which cover what lies below; black if there is none.
+    colours: red, green and blue (0 … 1) of each layer, black if there is none. A layer covers what lies below.
     """
     left, bottom, right, top = box
     dpi = min(72.0, 72.0 * SIDE / max(right - left, top - bottom))
@@ -44,6 +44,6 @@ def comments(
 
 
 def _grey(colour: tuple[float, float, float]) -> float:
-    """How light a colour is, as it is stored."""
+    """The grey, 0 … 1, that shows a colour of sRGB: its coded channels, weighed as luminance is."""
     red, green, blue = (share * part for share, part in zip(XYZ[1], colour, strict=True))
     return min(red + green + blue, 1.0)

@@ -1,4 +1,4 @@
-"""The outputs: what `draw` writes by the ending of -o, and the subcommands that write it.
+"""The outputs: what `draw` writes, by the ending of -o, and the subcommands that write the same.
 
 One line of `OUTPUTS` and one module, `outputs/NAME.py` for `to-NAME`, make an output. The module has
 
@@ -7,8 +7,8 @@ One line of `OUTPUTS` and one module, `outputs/NAME.py` for `to-NAME`, make an o
     write(out, layers, page, colours, **options): writes the layers, the first at the bottom, on a `Page`
 
 The subcommand, its man page and completion, `draw`'s endings, the README's table and the tests that run over all
-subcommands follow from the line. An output that wants another subcommand than this (`own`) is that subcommand instead,
-`commands/to_name.py`: it reads, and writes itself or calls what does.
+subcommands follow from the line. An output that reads or writes in another way is a subcommand of its own instead,
+`commands/to_name.py`, and its line is marked `own`.
 """
 
 from __future__ import annotations
@@ -19,11 +19,11 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Medium:
-    """What is written.
+    """What there is to know of an output before its module is loaded.
 
-    endings: of files that `draw` writes so, with spaces between them. summary: first line of the subcommand's help.
+    endings: of the files that it writes, with spaces between them. summary: first line of the subcommand's help.
     reads: "strokes", each file a layer, or "illustration". own: the subcommand is a module of `penink_cli.commands`.
-    binary: not to be written to a terminal. screen: looked at as it is, mostly, and not printed.
+    binary: not to be written to a terminal. screen: mostly looked at on a screen, and not printed.
     """
 
     endings: str
@@ -38,9 +38,8 @@ class Medium:
 class Option:
     """An option of one output, which its `write` takes by the same name.
 
-    default: False for a flag, a number, one of the choices, or an empty text for any text.
-    least, most: of a number. length: a number of points,
-    which may be given in other units.
+    default: False for a flag, a number, one of the choices, or an empty text for any text. least, most: of a number.
+    length: the number is a length in points, which may be given in other units.
     """
 
     name: str
@@ -67,7 +66,7 @@ _BY_ENDING = {ending: name for name, output in OUTPUTS.items() for ending in out
 
 
 def endings() -> list[str]:
-    """All endings that a drawing may have, of strokes first."""
+    """All endings that a drawing may have; those of illustrations come last."""
     return sorted([STROKES, *_BY_ENDING], key=of_illustrations)
 
 
@@ -82,5 +81,5 @@ def of_illustrations(ending: str) -> bool:
 
 
 def on_screen(ending: str) -> bool:
-    """Whether such a file is looked at as it is, mostly; a printer would darken it."""
+    """Whether such a file is mostly looked at on a screen, where no printer widens the strokes."""
     return ending in _BY_ENDING and OUTPUTS[_BY_ENDING[ending]].screen

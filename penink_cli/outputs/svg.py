@@ -1,7 +1,7 @@
-"""Strokes as SVG, in millimetres, a path each; of strokes that swell the outline.
+"""Strokes as SVG, in millimetres, a path for each; a stroke that swells is the path of its outline.
 
-Layers are groups that Inkscape shows as layers. Their labels begin with their number, as vpype
-and AxiDraw take the first digits of a label for the layer's number.
+Layers are groups that Inkscape shows as layers. Their labels begin with their number, for vpype
+and an AxiDraw take the first digits of a label for the layer's number.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 
 from penink_cli.formats.strokes import Sink
+from penink_cli.ground.codes import code_of
 from penink_cli.ground.decimals import plain
 from penink_cli.ground.model import Floats, Ints, Strokes
 from penink_cli.outputs import inks, swelling, words
@@ -19,8 +20,8 @@ from penink_cli.outputs.page import Page
 
 MM = 25.4 / 72
 DECIMALS = 3  # micrometres
-OUTLINE_DECIMALS = 2  # of outlines, in whole numbers of these: an eighth of a dot of most printers
-BATCH = 20000
+OUTLINE_DECIMALS = 2  # of a millimetre: outlines are off by an eighth of a dot of 600 dpi at the most
+BATCH = 20000  # strokes that are turned into text at a time
 
 
 def write(
@@ -33,8 +34,8 @@ def write(
 ) -> None:
     """Write an SVG 1.1 file; the first layer is at the bottom. Colours: red, green, blue (0 … 1) of each layer.
 
-    Where there are several, a layer's ink is transparent for what lies below. labels: names of the layers, their
-    numbers and their own names unless given. merge: one path for strokes of one width that stand together.
+    Where there are several colours, a layer's ink is transparent: what lies below shows through. labels: of the layers;
+    unless given, their numbers and names. merge: one path for strokes of one width that follow one another.
     """
     colours = [colours[i] if i < len(colours) else inks.BLACK for i in range(len(layers))]
     blend = ' style="mix-blend-mode:multiply"' if inks.overprint(colours) else ""
@@ -47,8 +48,7 @@ def write(
     for i, layer in enumerate(layers):
         label = f"{i + 1} {layer.layer}" if layer.layer else f"{i + 1}"
         label = _xml(labels[i] if labels else label)
-        red, green, blue = colours[i]
-        colour = f"#{_hex(red)}{_hex(green)}{_hex(blue)}"
+        colour = code_of(colours[i])
         swells = layer.swells
         layer, wide = (layer.taken(~swells), layer.taken(swells)) if swells.any() else (layer, None)
         pens, counts = np.unique(layer.widths, return_counts=True)
@@ -82,7 +82,7 @@ def _paths(layer: Strokes, start: int, stop: int, page: Page, usual: float, merg
     pens, pen = np.unique(layer.widths[start:stop], return_inverse=True)
     begin = b'<path d="M'
     ends = [b"" if p == usual else b' stroke-width="%s"' % plain(p * MM, 4).encode() for p in pens.tolist()]
-    # A dot is a line of a micrometre: one without length is not drawn by all, and dropped by vpype.
+    # A dot is a line of a micrometre: some programs do not draw a line without length, and vpype drops it.
     lines = [b'"%s/>\n%s' % (end, begin) for end in ends]
     table = [b" ", b"c", begin, *lines, *(b"h.001" + line for line in lines)]
     after = np.zeros((len(numbers), 2), np.int32)
@@ -97,7 +97,7 @@ def _paths(layer: Strokes, start: int, stop: int, page: Page, usual: float, merg
 
 
 def _outlines(strokes: Strokes, page: Page) -> memoryview:
-    """The outlines of strokes that swell, a path each: so filled, by either rule, they are the strokes."""
+    """The outlines of strokes that swell, a path each; filled, by either rule, they are the strokes."""
     points, first = swelling.outlines(strokes)
     numbers = _relative(points, first, page, OUTLINE_DECIMALS)
     begin = b'<path d="M'
@@ -109,7 +109,7 @@ def _outlines(strokes: Strokes, page: Page) -> memoryview:
 
 
 def _relative(points: Floats, first: Ints, page: Page, decimals: int = DECIMALS) -> Ints:
-    """Points (p, 2) of chains in whole 10^-decimals mm on the page: segments relative to where they begin."""
+    """Points (p, 2) of chains on the page in whole 10^-decimals mm, those of a segment relative to where it begins."""
     grid = words.whole((points + np.array((page.x, page.y))) * (MM * 10**decimals))
     inner = np.arange(len(grid)) - np.repeat(first[:-1], np.diff(first))
     origin = np.arange(len(grid)) - np.where(inner > 0, (inner - 1) % 3 + 1, 0)
@@ -119,7 +119,3 @@ def _relative(points: Floats, first: Ints, page: Page, decimals: int = DECIMALS)
 def _xml(name: str) -> str:
     """The name with what XML cannot hold replaced."""
     return "".join(c if c.isprintable() else "\ufffd" for c in name).encode("utf-8", "replace").decode()
-
-
-def _hex(value: float) -> str:
-    return f"{round(value * 255):02x}"

@@ -1,4 +1,4 @@
-"""The outlines of strokes that swell, for what can only fill a shape.
+"""The outlines of strokes that swell, for formats that can only fill a shape.
 
 What a disc covers on its way along a curve B(t) while its radius r(t) changes lies between two curves::
 
@@ -6,13 +6,13 @@ What a disc covers on its way along a curve B(t) while its radius r(t) changes l
        B ─────────►            directions along and to the left, m = −r'·T + √(1 − r'²)·n on the left,
           R                    −r'·T − √(1 − r'²)·n on the right
 
-Each is given segment by segment by the Bézier curve that begins and ends where it does, with its derivatives:
-L' = |B'|·(√(1 − r'²) − r·κ)·(m turned right), κ the curvature. On segments that turn little, as `gentle` makes all
-of them, it leaves the true outline by less than a hundredth of the width. (Tiller and Hanson, Offsets of
+Each side is approximated, a segment at a time, by the Bézier curve that has the same ends and the same derivatives
+there: L' = |B'|·(√(1 − r'²) − r·κ)·(m turned right), κ the curvature. `gentle` halves segments until they turn little;
+then the curve leaves the true outline by less than a hundredth of the width. (Tiller and Hanson, Offsets of
 two-dimensional profiles, 1984, move the control points instead, which is no simpler and less near.)
 
-A stroke is cut where it has a corner, where it bends as tightly as it is wide and at half turns: its outline would meet
-itself. The pieces have round ends, so nothing shows.
+A stroke is cut into pieces where its outline would meet itself: at corners, where it bends as tightly as it is wide,
+and at half turns. The pieces have round ends, so the cuts do not show.
 """
 
 from __future__ import annotations
@@ -27,17 +27,18 @@ from penink_cli.ground.model import Floats, Ints, Strokes
 
 Mask = npt.NDArray[np.bool_]
 
-#: A segment is halved, so often at the most, until its control polygon turns by no more than these cosines tell …
+#: A segment is halved, at most HALVINGS times, until the legs of its control polygon turn little: the cosine of the
+#: angle from one leg to the next is at least STEP_TURN, that from the first to the last at least WHOLE_TURN.
 HALVINGS, STEP_TURN, WHOLE_TURN = 6, 0.93, 0.85
-#: … and no leg of it is more than so many times as long as a third of them all, or less than one part of that.
+#: It is halved, too, while a leg is more than this many times as long, or short, as a third of all three.
 UNEVEN = 3.0
-#: Pieces end where the directions of two segments differ by more than this cosine tells.
+#: A piece ends where the cosine of the angle between two segments is less than this.
 CORNER = 0.985
-#: And around a segment whose outline on the inner side is shorter than this part of itself.
+#: A piece ends before and after a segment whose outline on the inner side is shorter than this part of the segment.
 TIGHT = 0.25
-#: And before they have turned so far (the sum of sines): what turns less cannot cross itself.
+#: A piece ends before the sum of its turns (their sines) exceeds this: what turns less cannot cross itself.
 HALF_TURN = 2.8
-TINY = 1e-9
+TINY = 1e-9  # points: a vector that is shorter has no direction
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,7 +50,7 @@ class Segments:
     owner: Ints
 
     def halved(self, which: Mask) -> Segments:
-        """Those segments in two halves each, by de Casteljau."""
+        """The segments, those of the mask (m,) in two halves each, by de Casteljau."""
         p, w = self.points[which], self.widths[which]
         ab, bc, cd = (p[:, :-1] + p[:, 1:]).transpose(1, 0, 2) / 2
         abc, bcd = (ab + bc) / 2, (bc + cd) / 2
@@ -64,9 +65,9 @@ class Segments:
 
 
 def gentle(strokes: Strokes, also: Callable[[Floats], Mask] | None = None) -> Segments:
-    """The segments of all strokes, halved until each turns little and goes along at an even pace.
+    """The segments of all strokes, halved until each turns little and its parameter goes along at an even pace.
 
-    also: what more is wanted of the control points (m, 4, 2) of segments.
+    also: a further condition (m,) on the control points (m, 4, 2) of segments.
     """
     counts = np.diff(strokes.first)
     segments = (counts - 1) // 3
@@ -85,7 +86,7 @@ def gentle(strokes: Strokes, also: Callable[[Floats], Mask] | None = None) -> Se
         if not rough.any():
             break
         found = found.halved(rough)
-    # where one end's disc holds the other's, it is that disc
+    # where the disc at one end holds the disc at the other, the segment is a dot: the larger disc
     p, w = found.points, found.widths
     held = _length(p[:, 3] - p[:, 0]) <= np.abs(w[:, 1] - w[:, 0]) / 2
     wider = np.where(w[:, 0] >= w[:, 1], 0, 1)[held]
@@ -130,10 +131,10 @@ def _unit(vectors: Floats, otherwise: Floats) -> Floats:
 
 @dataclass(frozen=True, eq=False)
 class SwollenEnds:
-    """What the outline needs to know at both ends of each segment; every array is (m, 2) or (m, 2, 2), start and end.
+    """The course of each segment at its start and its end; along is (m, 2, 2), the others are (m, 2).
 
-    along: direction. bend: |B'| · κ, positive to the left of `along` as the axes have it (x to y).
-    pace: |B'|. growth: r' by length, within ±.95.
+    along: direction, a unit vector. bend: |B'| · κ, positive where the curve turns from x towards y. pace: |B'|.
+    growth: r', of the radius by length, within ±.95.
     """
 
     along: Floats
@@ -164,7 +165,7 @@ def ends_of(segments: Segments) -> SwollenEnds:
 
 
 def cuts(segments: Segments, ends: SwollenEnds) -> Mask:
-    """(m + 1,) whether a piece begins before each segment: at strokes' ends, at corners, around tight bends."""
+    """(m + 1,) whether a piece begins before each segment, or ends after the last: see the top of this module."""
     m = len(segments.owner)
     cut = np.ones(m + 1, bool)
     if m:
@@ -182,8 +183,8 @@ def cuts(segments: Segments, ends: SwollenEnds) -> Mask:
 def outlines(strokes: Strokes) -> tuple[Floats, Ints]:
     """Closed outlines of all strokes, to be filled by either rule: points (p, 2), and where each begins (n + 1,).
 
-    An outline is a chain of cubic segments, 3k + 1 points whose last is the first again; it goes round by the left
-    side, as the axes have it (x to y), and back by the right. Those of one stroke may overlap one another.
+    An outline is a chain of cubic segments, 3k + 1 points whose last is the first again. It goes along the left side,
+    which is on the y side of a stroke that runs along x, and back along the right. Outlines of one stroke may overlap.
     """
     segments = gentle(strokes)
     if not len(segments.owner):
@@ -197,7 +198,7 @@ def outlines(strokes: Strokes) -> tuple[Floats, Ints]:
 
 
 def _shared(ends: SwollenEnds, inner: Mask) -> tuple[Floats, Floats]:
-    """Directions (m, 2, 2) and growths (m, 2); where a piece goes on (m - 1,) the mean of both, so that sides meet."""
+    """Directions (m, 2, 2) and growths (m, 2), averaged where a piece goes on (m - 1,), so that the sides meet."""
     along, growth = ends.along.copy(), ends.growth.copy()
     along[:-1, 1][inner] = along[1:, 0][inner] = _unit(along[:-1, 1] + along[1:, 0], along[1:, 0])[inner]
     growth[:-1, 1][inner] = growth[1:, 0][inner] = ((growth[:-1, 1] + growth[1:, 0]) / 2)[inner]
@@ -205,7 +206,7 @@ def _shared(ends: SwollenEnds, inner: Mask) -> tuple[Floats, Floats]:
 
 
 def _side(segments: Segments, ends: SwollenEnds, along: Floats, growth: Floats, radius: Floats, hand: float) -> Floats:
-    """Control points (m, 4, 2) of one side: hand 1 is the left one, as the axes have it, -1 the right."""
+    """Control points (m, 4, 2) of one side, hand 1 for the left and -1 for the right; see `outlines`."""
     normal = np.stack([-along[..., 1], along[..., 0]], axis=-1)
     across = np.sqrt(1 - growth * growth)
     m = -growth[..., None] * along + hand * across[..., None] * normal
@@ -216,7 +217,7 @@ def _side(segments: Segments, ends: SwollenEnds, along: Floats, growth: Floats, 
 
 
 def pieces(strokes: Strokes, also: Callable[[Floats], Mask], longest: int) -> Strokes:
-    """The strokes in pieces whose sides need not be cut, of so many segments at the most; see `gentle`."""
+    """The strokes in pieces as of `cuts`, of at most `longest` segments each. also: see `gentle`."""
     segments = gentle(strokes, also)
     cut = cuts(segments, ends_of(segments))
     begins = np.flatnonzero(cut)
@@ -230,10 +231,10 @@ def pieces(strokes: Strokes, also: Callable[[Floats], Mask], longest: int) -> St
 
 
 def passes(strokes: Strokes, pen: float) -> Strokes:
-    """Strokes of one pen, each stroke that swells as the parallel lines that cover it: in its middle, and in pairs.
+    """Strokes of one pen: a stroke that swells is covered by a line in its middle and pairs of lines parallel to it.
 
-    Pair i, from 1, is drawn where the stroke is wider than 2i − 1 pens, a pen further out than the pair before, or as
-    far as the edge allows: so it branches off that one.
+    pen: width, points. Pair i, from 1, is drawn where the stroke is wider than 2i − 1 pens. It lies a pen further out
+    than the pair before, or as far out as the edge of the stroke allows; so it branches off the pair before.
     """
     swells = strokes.swells
     thin = strokes.taken(~swells)
@@ -256,7 +257,7 @@ def passes(strokes: Strokes, pen: float) -> Strokes:
 
 
 def _chained(segments: Floats, first: Ints, sheet: Strokes) -> Strokes:
-    """Strokes of segments (m, 4, 2), each beginning with the one of `first`, (s + 1,)."""
+    """Strokes of segments (m, 4, 2) on a sheet like that of `sheet`; stroke i begins with segment first[i] (s + 1,)."""
     begins = np.zeros(len(first), np.int64)
     np.cumsum(3 * np.diff(first) + 1, out=begins[1:])
     points = np.empty((int(begins[-1]), 2))
@@ -269,7 +270,11 @@ def _chained(segments: Floats, first: Ints, sheet: Strokes) -> Strokes:
 def _contours(
     begins: Ints, left: Floats, right: Floats, knots: Floats, radius: Floats, along: Floats, growth: Floats
 ) -> tuple[Floats, Ints]:
-    """The sides of pieces, which begin at the segments `begins`, and the round ends between them, one after another."""
+    """Closed outlines, as of `outlines`: of each piece the left side, a round end, the right side, a round end.
+
+    begins: (n + 1,) the first segment of each piece. left, right: (m, 4, 2) control points of the sides. knots: (m, 2,
+    2) both ends of the segments; radius, along, growth: there.
+    """
     start, end = begins[:-1], begins[1:] - 1
     k = end - start + 1
     first = np.zeros(len(k) + 1, np.int64)
@@ -293,7 +298,10 @@ def _contours(
 
 
 def _round_end(centre: Floats, radius: Floats, ahead: Floats, growth: Floats) -> Floats:
-    """Two cubic segments (n, 6, 2) from the left side round to the right, where a piece ends that goes `ahead`."""
+    """Two cubic segments (n, 6, 2), without their first points, from the left side of a piece's end to the right.
+
+    ahead: (n, 2) the direction in which the piece ends.
+    """
     left = np.stack([-ahead[:, 1], ahead[:, 0]], axis=1)
     sine, lean = np.sqrt(1 - growth * growth)[:, None], -growth[:, None]  # of the angle from ahead to the side
     half = np.sqrt((1 - lean) / 2) / (1 + np.sqrt((1 + lean) / 2))  # tan of a quarter of the angle

@@ -12,7 +12,7 @@ from penink_cli.outputs._compiled import words as _words
 
 
 def text(numbers: Ints, after: npt.NDArray[np.int32], words: Sequence[bytes], decimals: int = 0) -> memoryview:
-    """Each of numbers / 10^decimals, without needless zeros, followed by words[after].
+    """Each of numbers / 10^decimals (n,), without needless zeros, followed by its word, words[after[i]].
 
     >>> bytes(text(np.array([10, -25, 0]), np.array([0, 0, 1], np.int32), [b" ", b" l"], decimals=1))
     b'1 -2.5 0 l'
@@ -28,5 +28,5 @@ def text(numbers: Ints, after: npt.NDArray[np.int32], words: Sequence[bytes], de
 
 
 def whole(values: Floats) -> Ints:
-    """Nearest whole numbers."""
+    """Values of any shape rounded to the nearest whole numbers."""
     return np.rint(values).astype(np.int64)

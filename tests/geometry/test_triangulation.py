@@ -10,6 +10,7 @@ import pytest
 from penink_cli.geometry import meshers
 from penink_cli.geometry.regions import edges_around, region_mask
 from penink_cli.geometry.triangulation import triangulate
+from penink_cli.geometry.validity import check
 from penink_cli.ground.errors import ArrangementError, ParameterError
 from penink_cli.ground.model import EdgeList
 from tests.oracles.brute import turn
@@ -111,7 +112,22 @@ def test_crossing_edges_are_refused_here_too():
 def test_edges_through_a_vertex_are_refused_here_too():
     through = EdgeList(9, 9, np.array([(1.0, 1), (8, 8), (4, 4), (8, 1)]), np.array([(0, 1), (2, 3)]))
     with pytest.raises(ArrangementError, match="cross"):
-        meshers.by_pythoncdt(np.concatenate([through.vertices, [(0, 0), (9, 0), (9, 9), (0, 9)]]), through.edges)
+        triangulate(through)
+
+
+@pytest.mark.parametrize(
+    "vertices",
+    [
+        [(1.395, 6.975), (6.038, 1.484), (2.877796401393742, 5.221384871838674), (2.312, 5.184)],
+        [(8.963, 8.704), (5.158, 2.796), (6.807608601700982, 5.357337087739658), (7.198, 4.714)],
+        [(7.243, 1.196), (2.296, 3.461), (4.227547060112535, 2.576634911834467), (3.763, 2.617)],
+    ],
+)
+def test_slivers_turn_as_they_do_and_not_as_rounding_says(vertices):
+    """The third vertex lies a hair beside the first edge; by doubles the triangle between them turns the other way."""
+    edges = edge_list(10, 10, vertices, [(0, 1), (2, 3)])
+    check(edges)
+    validate(triangulate(edges), edges)
 
 
 @pytest.mark.parametrize("case", [*HOSTILE, *range(40)])

@@ -37,6 +37,7 @@ def edge_list(vertices, edges, width=10, height=10):
         ([(0, 0), (np.inf, 3)], [(0, 1)], "edge 0: vertex 1 is not finite"),
         ([(0, 0), (8, 8)], [(0, 2)], "edge 0: vertex 2 is not in 0..1"),
         ([(0, 0), (8, 8)], [(-1, 1)], "edge 0: vertex -1 is not in 0..1"),
+        ([], [(0, 1)], "edge 0: vertex 0 is not in an empty list"),
     ],
 )
 def test_a_fault_is_refused_and_named(vertices, edges, message):

@@ -1,11 +1,14 @@
-"""What steps reach within a window of pixels, a row of it in one word of 64 bits.
+"""A flood fill within a window of at most 64 columns of pixels, a row in one word of 64 bits.
 
 A flood of words takes a fifth of the time of a queue of pixels.
 """
 
 
 cdef inline unsigned long long along(unsigned long long s, unsigned long long right, int side) noexcept nogil:
-    """Spread bits along a row both ways, in steps of 1, 2, 4 … columns over the open ones (Kogge and Stone)."""
+    """Spread the bits s of a row both ways over open steps, 1, 2, 4 … columns at a time (Kogge and Stone).
+
+    right: a bit for each pixel from which the step to the next is open. side: columns.
+    """
     cdef unsigned long long onward = right << 1
     cdef unsigned long long back = right
     cdef int step = 1
@@ -23,9 +26,9 @@ cdef inline unsigned long long along(unsigned long long s, unsigned long long ri
 cdef inline void flood(
     unsigned long long* seen, unsigned long long* right, unsigned long long* down, int first, int last, int side
 ) noexcept nogil:
-    """Spread the bits of rows first … last − 1, `side` columns wide, over all that open steps lead to.
+    """Spread the bits `seen` of rows first … last − 1, `side` columns wide, to all pixels that open steps lead to.
 
-    right, down: a bit for each pixel from which a step leads to the next in its row, and to that below.
+    right, down: a bit for each pixel from which the step to the next in its row, or to the one below, is open.
     """
     cdef int r, k, sweep
     cdef unsigned long long s

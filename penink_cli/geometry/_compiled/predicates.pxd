@@ -4,7 +4,7 @@ cdef int exactly(double ax, double ay, double bx, double by, double cx, double c
 
 
 cdef inline int orient(double ax, double ay, double bx, double by, double cx, double cy) noexcept nogil:
-    """Exact sign of (b − a) × (c − a): 1, −1 or 0. Here, so that kernels ask it without a call."""
+    """Exact sign of (b − a) × (c − a): 1, −1 or 0. It stands here so that kernels have it without a call."""
     cdef double left = (bx - ax) * (cy - ay)
     cdef double right = (by - ay) * (cx - ax)
     cdef double area = left - right

@@ -9,6 +9,10 @@
 A double evaluation with an error bound settles nearly every call. The rest is summed exactly: six products, each split
 into its rounded value and its rounding error, added up as a non-overlapping expansion whose last non-zero term has the
 sign of the sum. Bound and expansions: Shewchuk, Adaptive Precision Floating-Point Arithmetic, 1997.
+
+The tie rule: a query (a sample, a pixel's centre, a point) on the line through a and b stands for itself shifted by (ε,
+ε²), ε above 0 and arbitrarily small. Its side is then the sign of a.y − b.y or, where these are equal, of b.x − a.x.
+Kernels, Python, JavaScript and PostScript all break ties so.
 """
 
 cdef double SPLITTER = 134217729.0  # 2²⁷ + 1

@@ -1,8 +1,8 @@
 # cython: boundscheck=False, wraparound=False, cdivision=True
 """Compiled: edges followed as a pen would, straight on at junctions. Only `trails` imports this module.
 
-        c                 Coming from a, a trail goes on to d, whose direction is nearest to that from a; c is left
-        |                 for another one. Where two edges meet it goes on in any case.
+        c                 Coming from a, a trail goes on to d, the straightest way; c is left for another trail. Where
+        |                 but two edges meet, a trail goes on whatever the bend.
     a --+---- d
 """
 
@@ -13,11 +13,11 @@ from penink_cli.ground._compiled.memory cimport room
 
 cdef struct Graph:
     const double* at  # two a vertex
-    long long* first  # of each vertex, its first place in the two lists that follow, and the end of the last
-    int* other  # at the other end of each edge of a vertex, edges in their order
-    int* edge
-    unsigned char* used  # of each edge
-    double limit  # straightness that a trail goes on for
+    long long* first  # vertex v has the places first[v] … first[v + 1] - 1 in the two lists that follow
+    int* other  # the vertex at the other end of each of its edges
+    int* edge  # that edge
+    unsigned char* used  # of each edge, whether a trail has it already
+    double limit  # the least straightness for which a trail goes on
 
 
 def follow(
@@ -27,8 +27,8 @@ def follow(
     """Fill in the vertices and edges of all trails, one after another, and the number of edges of each.
 
     points: (n, 2). ends: (m, 2). starts: (n,) vertices in the order in which trails may begin at them. order: (m,)
-    edges in the order in which they are taken where nothing else tells. limit: the square of the least cosine of a
-    bend, with its sign. vertices: (2 m,), edges: (m,), count: (m,) room. Returns the number of trails.
+    edges in the order in which equals are taken. limit: the square of the least cosine of a bend, with the cosine's
+    sign. vertices: (2 m,), edges: (m,), count: (m,) room for the result. Returns the number of trails.
     """
     cdef Py_ssize_t n = points.shape[0], m = ends.shape[0], i, k
     cdef int a, b, here, way, rings, trails = 0, taken = 0, left, begin
@@ -55,7 +55,7 @@ def follow(
                     graph.first[ends[i, k] + 2] += 1
             for i in range(2, n + 2):
                 graph.first[i] += graph.first[i - 1]
-            for i in range(m):  # a vertex's next place stands one beyond it, and is its end in the end
+            for i in range(m):  # first[v + 1] is the next free place of vertex v, and the end of its places at last
                 for k in range(2):
                     a, b = ends[order[i], k], ends[order[i], 1 - k]
                     graph.other[graph.first[a + 1]] = b
@@ -93,7 +93,10 @@ def follow(
 
 
 cdef int onward(const Graph* graph, int here, int came, double came_x, double came_y) noexcept nogil:
-    """The place in the lists of the edge that a trail goes on along, -1 where it ends; came: negative at its start."""
+    """The place in the lists of the edge along which a trail goes on from vertex `here`, -1 where the trail ends.
+
+    came: negative at the start of a trail. came_x, came_y: the edge by which it has come.
+    """
     cdef long long k, begin = graph.first[here], end = graph.first[here + 1]
     cdef int best = -1
     cdef double dx, dy, along, straight, straightest = 0.0, length = came_x * came_x + came_y * came_y

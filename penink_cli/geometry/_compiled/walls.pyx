@@ -52,9 +52,10 @@ def near(
     double[::1] ax, double[::1] ay, double[::1] bx, double[::1] by, double margin, float[:, ::1] distance,
     int[:, ::1] nearest=None,
 ) -> None:
-    """Lower `distance` (h, w) to the distance from pixel centres to edges, where it is at most margin.
+    """Lower `distance` (h, w) to that from each pixel's centre to the nearest edge, where it is at most margin.
 
-    nearest: (h, w) of which edge that is, or None.
+    ax, ay, bx, by: (m,) ends of the edges, and margin, in pixels. nearest: (h, w) the nearest edge's number, set where
+    the distance is lowered; or None.
     """
     cdef bint told = nearest is not None
     cdef Py_ssize_t e, i, j
@@ -74,7 +75,7 @@ def near(
             high = max(y0, y0 + dy) + margin
             i = max(0, <Py_ssize_t>ceil(low))
             while i < height and i <= high:
-                # the part of the edge within margin of this row bounds the columns
+                # the part of the edge within margin of this row bounds the columns that can be near
                 left = 0.0
                 right = 1.0
                 if dy != 0:
@@ -114,9 +115,9 @@ cdef inline int _root(int[::1] parent, int k) noexcept nogil:
 
 
 def regions(unsigned char[:, ::1] walls, int[::1] parent) -> None:
-    """Join pixel centres between which a step crosses no edge; afterwards parent[k] is the region's first pixel.
+    """Join pixels between whose centres a step crosses no edge.
 
-    walls: (h, w) as of `block`. parent: (h · w,) filled.
+    walls: (h, w) as of `block`. parent: (h · w,), filled with the first pixel of each pixel's region.
     """
     cdef int i, j, k, a, b
     cdef int height = walls.shape[0]

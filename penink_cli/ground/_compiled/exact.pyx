@@ -1,5 +1,5 @@
 # cython: boundscheck=False, wraparound=False, cdivision=True
-"""Compiled: `real.pxd` over arrays. See exact.py, which gives these flat arrays (n,) of one length."""
+"""Compiled: the functions of `real.pxd` over arrays. All arrays are flat, (n,), and of one length; see exact.py."""
 
 from penink_cli.ground._compiled.real cimport angle_of, cosine_of, exponential, logarithm, sine_of
 
@@ -32,7 +32,7 @@ def powers(const double[::1] x, const double[::1] y, double[::1] out) -> None:
 
 
 def angles(const double[::1] x, const double[::1] y, double[::1] out) -> None:
-    """out = the angle of (x, y), -π … π; 0 for none."""
+    """out = the angle of the vector (x, y), -π … π; 0 for the zero vector."""
     cdef Py_ssize_t k
     with nogil:
         for k in range(x.shape[0]):

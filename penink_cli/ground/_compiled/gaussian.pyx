@@ -9,7 +9,10 @@ from penink_cli.ground._compiled.memory cimport room
 
 
 def smooth(const float[:, ::1] grey, const double[::1] weights, float[:, ::1] out) -> None:
-    """Grey filtered down and across by weights, the middle one first; beyond its sides it goes on as it ends."""
+    """Filter grey (h, w) down and across into out (h, w). Beyond its sides the picture goes on as it ends.
+
+    weights: (n,) one half of a symmetric filter, the middle weight first.
+    """
     cdef Py_ssize_t h = grey.shape[0], w = grey.shape[1], n = weights.shape[0], i, j, k
     cdef const float* above
     cdef const float* below

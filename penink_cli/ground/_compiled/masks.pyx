@@ -1,5 +1,5 @@
 # cython: boundscheck=False, wraparound=False, cdivision=True
-"""Compiled: pixels that hang together, and how far it is from them to others. Only `masks` imports this module."""
+"""Compiled: connected parts of a mask, and distances to the nearest pixel outside. Only `masks` imports this module."""
 
 from libc.math cimport sqrt
 from libc.stdlib cimport free
@@ -9,11 +9,11 @@ from penink_cli.ground._compiled.memory cimport room
 def label(const unsigned char[:, ::1] mask, bint corners, int[:, ::1] part) -> int:
     """Number the parts of a mask (h, w) whose pixels touch: 1 … in the order of their first pixels.
 
-    corners: whether those touch that have a corner in common. part: (h, w) the number of each pixel's, 0 for none.
-    Returns how many there are.
+    corners: whether pixels with nothing but a corner in common touch. part: (h, w) the number of each pixel's part, 0
+    outside the mask. Returns the number of parts.
 
-    Every run of a row gets the number of what it touches in the row above, or a new one; where it joins several, all
-    but the least go under that. The least number of a part is that of its first pixel's run.
+    Every run of a row gets the number of what it touches in the row above, or a new one. Where a run touches several
+    numbers, all go under the least. The least number of a part is that of its first pixel's run.
 
         1 1 . 2 .
         1 . . 2 .    number  1 2 3
@@ -52,7 +52,7 @@ def label(const unsigned char[:, ::1] mask, bint corners, int[:, ::1] part) -> i
                     for k in range(begin, j):
                         part[i, k] = number
             number = 0
-            for k in range(1, count + 1):  # what lies under another has a lesser one above it, which is numbered
+            for k in range(1, count + 1):  # a number lies under lesser ones only, which have their final numbers
                 if under[k] == k:
                     number += 1
                     under[k] = number
@@ -67,7 +67,7 @@ def label(const unsigned char[:, ::1] mask, bint corners, int[:, ::1] part) -> i
 
 
 cdef inline int root(int* under, int number) noexcept nogil:
-    """The least number of the part; what was passed on the way goes straight under its own root's."""
+    """The least number of the part that a number belongs to. The numbers on the way there are moved up by a step."""
     while under[number] != number:
         under[number] = under[under[number]]
         number = under[number]
@@ -75,7 +75,7 @@ cdef inline int root(int* under, int number) noexcept nogil:
 
 
 cdef inline int joined(int* under, int a, int b) noexcept nogil:
-    """The least number of two parts that are one."""
+    """The least number of two parts, which are one from now on."""
     a, b = root(under, a), root(under, b)
     if a < b:
         under[b] = a
@@ -85,7 +85,7 @@ cdef inline int joined(int* under, int a, int b) noexcept nogil:
 
 
 def boxes(const int[:, ::1] part, int[:, ::1] box) -> None:
-    """Fill in first row, one past the last, first column and one past the last (parts, 4) of each part."""
+    """Fill in (parts, 4) each part's first row, the row past its last, its first column, the column past its last."""
     cdef Py_ssize_t h = part.shape[0], w = part.shape[1], i, j, k, begin
     with nogil:
         for k in range(box.shape[0]):
@@ -104,7 +104,7 @@ def boxes(const int[:, ::1] part, int[:, ::1] box) -> None:
 
 
 def sizes(const int[:, ::1] part, const unsigned char[:, ::1] mask, long long[::1] size) -> None:
-    """Add to the size of each part, by number from 0 on, how many of its pixels (h, w) are in the mask."""
+    """Add to size[k] how many pixels of part k, (h, w), are in the mask, from number 0 on."""
     cdef Py_ssize_t i, j
     with nogil:
         for i in range(part.shape[0]):
@@ -113,10 +113,10 @@ def sizes(const int[:, ::1] part, const unsigned char[:, ::1] mask, long long[::
 
 
 def distance(const unsigned char[:, ::1] mask, double[:, ::1] out) -> None:
-    """From each pixel of a mask (h, w) to the middle of the nearest one outside of it, pixels; 1e300 for none.
+    """Distances in pixels from each pixel of a mask (h, w) to the nearest pixel outside; 1e300 where there is none.
 
-    In a column the nearest one is counted; of each row's pixels those are kept that are nearest to some (Meijster,
-    Roerdink and Hesselink 2000). All in whole numbers, so that the nearest is the nearest.
+    The nearest pixel is found first within each column; of those in a row the lower envelope of parabolas picks the
+    nearest (Meijster, Roerdink and Hesselink 2000). Comparisons are of whole numbers, which no rounding can upset.
     """
     cdef Py_ssize_t h = mask.shape[0], w = mask.shape[1], i, j, away, far = h + w
     cdef int* down = NULL
@@ -141,11 +141,11 @@ def within(
     const unsigned char[:, ::1] mask, int reach, int most, unsigned char[:, ::1] down, short[:, ::1] best,
     Py_ssize_t top, unsigned char[:, ::1] out,
 ) -> None:
-    """Of the rows from `top` on, which pixels (rows, w) one outside the mask (h, w) is near to: the square of the
-    distance is `most` at the most.
+    """Which pixels (rows, w) of the rows from `top` on have a pixel outside the mask (h, w) near.
 
-    reach: pixels, the root of that rounded down, 100 at the most: what is counted fits into octets, its square into
-    their double, and as many more numbers into a vector. down: (rows + 2 reach, w), best: (2, w + 2 reach), room.
+    most: the square of the distance, pixels, that is near at the most. reach: its root rounded down, at most 100, so that
+    distances fit into 8 bits and their squares into 16: a vector holds the more of them. down: (rows + 2 reach, w),
+    best: (2, w + 2 reach), room to work in.
     """
     cdef Py_ssize_t h = mask.shape[0], w = mask.shape[1], rows = out.shape[0], i, j, k
     cdef Py_ssize_t begin = max(0, top - reach), end = min(h, top + rows + reach)
@@ -179,7 +179,7 @@ def within(
 cdef void count_near(
     const unsigned char[:, ::1] mask, Py_ssize_t begin, Py_ssize_t end, unsigned char far, unsigned char* down
 ) noexcept nogil:
-    """`count_down` of the rows begin … end of the mask alone, to octets."""
+    """As `count_down`, of the rows begin … end − 1 of the mask alone, in 8 bits: (end − begin, w)."""
     cdef Py_ssize_t w = mask.shape[1], i, j
     cdef const unsigned char* here
     cdef unsigned char* row
@@ -202,11 +202,11 @@ cdef void count_near(
 
 
 cdef void count_down(const unsigned char[:, ::1] mask, int far, int* down) noexcept nogil:
-    """How far up or down the nearest pixel outside the mask (h, w) is in its column, `far` at the most: (h, w)."""
+    """Fill in (h, w) how far the nearest pixel outside the mask is in each pixel's column, `far` at the most."""
     cdef Py_ssize_t h = mask.shape[0], w = mask.shape[1], i, j
     cdef int* row
     cdef int* other
-    for i in range(h):  # row after row, and not column after column: that many pixels at a time
+    for i in range(h):  # row after row, not column after column: the loops over a row vectorise
         row = down + i * w
         other = row - w
         for j in range(w):
@@ -224,9 +224,10 @@ cdef void count_down(const unsigned char[:, ::1] mask, int far, int* down) noexc
 
 
 cdef void nearest(const int* down, Py_ssize_t w, Py_ssize_t* which, Py_ssize_t* begin) noexcept nogil:
-    """For each pixel of a row the one under or over which the nearest lies, so far down: `which`, (w,).
+    """Fill in `which` (w,): for each pixel of a row the column in which its nearest pixel outside the mask lies.
 
-    begin: (w,) room for the pixel from which on each of those kept is the nearest.
+    down: (w,) how far that pixel lies up or down in each column. begin: (w,) room to work in: the column from which on
+    each column that is kept is the nearest.
     """
     cdef Py_ssize_t count = 0, j, k, start
     for j in range(w):
@@ -243,7 +244,7 @@ cdef void nearest(const int* down, Py_ssize_t w, Py_ssize_t* which, Py_ssize_t* 
         if count == 0 or start < w:
             which[count], begin[count] = j, start
             count += 1
-    j = w - 1  # from the right, so that none of those kept is overwritten before it has been used
+    j = w - 1  # from the right, so that no column kept is overwritten before it has been used
     for k in range(count - 1, -1, -1):
         start = which[k]
         for j in range(j, begin[k] - 1, -1):

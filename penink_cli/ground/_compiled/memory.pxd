@@ -1,4 +1,4 @@
-"""Room on the heap for kernels: MemoryError where there is none, so that no result of malloc goes unchecked."""
+"""Room on the heap for kernels. Want of memory is a MemoryError, so that no result of malloc goes unchecked."""
 
 from libc.stdlib cimport realloc
 
@@ -15,7 +15,7 @@ cdef inline void* room(size_t count, size_t each) except NULL nogil:
 
 
 cdef inline int grow(void** place, size_t count, size_t each) except -1 nogil:
-    """Make room for `count` things at a place, and keep those that are there. MemoryError: all is as it was."""
+    """Make room for `count` things at a place, and keep those that are there. After a MemoryError all is as before."""
     cdef void* larger = NULL
     if count == 0:
         count = 1

@@ -1,8 +1,8 @@
 """Sine, exponential, logarithm and angle of doubles from +, -, *, / and square roots: on all machines the same bits.
 
-A C library's own differ from one to another in the last bit, and one bit can decide where a stroke ends. These are
-within 2 units in the last place of the true values for |x| < 10^5, 700 and for normal numbers; beyond, they are not
-meant to be used.
+C libraries differ from one another in the last bit, and one bit can decide where a stroke ends. These functions are
+within 2 units in the last place of the true values: sine and cosine for |x| < 10^5, the exponential for |x| < 700, the
+logarithm for normal positive numbers. They are not for arguments beyond.
 """
 
 from libc.math cimport floor, frexp, ldexp, sqrt

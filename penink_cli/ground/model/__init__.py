@@ -10,7 +10,7 @@ edges         EdgeList; lines: Lines and which are drawn; directions: Directions
 strokes       Strokes, with its verbs: joined, taken, rounded, by_segments
 textures      Texture and what it may be besides a tile: HatchLayer, Engraving, Scales
 illustration  Illustration, its Layers
-arrays        what all are made of
+arrays        the kinds of arrays that these values are made of
 
 Nothing here knows of files, options or algorithms.
 """

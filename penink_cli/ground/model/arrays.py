@@ -10,9 +10,10 @@ Ints = npt.NDArray[np.int64]
 
 
 def members(first: Ints, which: Ints, turned: npt.NDArray[np.bool_] | None = None) -> tuple[Ints, Ints]:
-    """Where the members of the groups `which` lie, group after group, and where each of these then begins.
+    """The places of all members of the groups `which` (k,), and where each group's begin among these (k + 1,).
 
-    first: (g + 1,) group i has the members first[i] … first[i + 1] - 1. turned: those of `which` to be taken backwards.
+    first: (g + 1,) group i has the members first[i] … first[i + 1] - 1. turned: (k,) whether a group's members are
+    taken backwards.
 
     >>> [part.tolist() for part in members(np.array([0, 2, 5]), np.array([1, 0]), np.array([True, False]))]
     [[4, 3, 2, 0, 1], [0, 3, 5]]

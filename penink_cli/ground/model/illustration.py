@@ -43,7 +43,8 @@ class Layer:
     lines, line: its telling lines, None for none, and how they are drawn.
     color: of its ink, ``#rrggbb``, None for black. Inks of different colours are transparent and know nothing of each
         other: each is drawn as if it had the sheet to itself.
-    turn: degrees that `texture` is turned already, and strokes are from the field: several inks' hatching is to cross.
+    turn: degrees by which `texture` has been turned, and by which strokes along the field are to be, so that the
+        hatching of several inks crosses.
     """
 
     samples: GreyImage

@@ -26,8 +26,9 @@ class Strokes:
     widths: (s,) pen width of each stroke, points; of one that swells, the mean of its knots' widths.
     knot_widths: (n,) width at each knot, where a segment begins or ends, and linear along each segment's parameter
         between; stroke i owns knot_widths[knots[i] : knots[i + 1]], k + 1 of them. None where no stroke swells.
+    layer, texture, seed: what the file's header says of the strokes, None where it does not.
     color: ``#rrggbb``, None for what the output chooses.
-    device_dpi: resolution of the printer whose gain the strokes allow for (see `gain`), None for no printer's.
+    device_dpi: resolution of the printer whose gain the strokes allow for (`ground/device.py`), None for no printer.
     """
 
     width: float
@@ -71,7 +72,10 @@ class Strokes:
 
     @staticmethod
     def joined(parts: Sequence[Strokes]) -> Strokes:
-        """The strokes of all parts, in their order, on the first one's sheet; what the parts agree in is kept."""
+        """The strokes of all parts, at least one, in their order and on the first one's sheet.
+
+        Of layer, texture, seed, colour and device_dpi those are kept that all parts agree in.
+        """
         first = np.zeros(1 + sum(map(len, parts)), np.int64)
         np.cumsum(np.concatenate([np.diff(part.first) for part in parts]), out=first[1:])
         whole = Strokes(
@@ -114,7 +118,7 @@ class Strokes:
         return np.maximum.reduceat(self.knot_widths, self.knots[:-1])
 
     def swelling(self, knot_widths: Floats) -> Strokes:
-        """The same strokes with these widths at their knots (n,), and their means."""
+        """The same strokes with these widths at their knots (n,); a stroke's width is the mean of its knots' widths."""
         knots = self.knots
         if not len(self):
             return self
@@ -123,7 +127,7 @@ class Strokes:
         return replace(swelling, widths=np.where(swelling.swells, means, knot_widths[knots[:-1]]))
 
     def by_segments(self, step: float = 0.15) -> Strokes:
-        """Strokes that cover the same, each of one width: those that swell in pieces, a step (points) apart."""
+        """Strokes that cover the same, each of one width: swelling strokes in pieces, whose widths are `step` apart."""
         if self.knot_widths is None:
             return self
         swells = self.swells

@@ -13,15 +13,15 @@ from penink_cli.ground.model.strokes import Strokes
 
 @dataclass(frozen=True)
 class HatchLayer:
-    """One layer of hatching, for those who lay strokes as densely as the tone asks instead of from a tile.
+    """One layer of hatching, for rules that lay strokes as densely as the tone asks instead of from a tile.
 
     angle: direction of the strokes in degrees, from x towards y (clockwise on paper).
     low, high: the layer begins where the picture's tone exceeds `low`, and has brought it to `high` where it ends.
     pen_pt: width of the strokes, points.
     spacing_pt: the strokes' centre lines are nowhere closer than this, points; 0 for no limit.
     wave_pt, wave_length_pt: how far the strokes wander sideways, as the grain of wood does, and over what length.
-    turn: where there is a field of directions, degrees of the strokes from it; None for what angle differs by from that
-        of the first layer.
+    turn: degrees from the field of directions to the strokes, where there is a field; None for the difference of angle
+        from the first layer's.
     """
 
     angle: float
@@ -42,7 +42,7 @@ class Engraving:
     angle: degrees, clockwise from the right, where lines are straight. along: they run along a field if there is one.
     centre: x and y in parts of the sheet's width and height of the point about which they are rings, None for none.
     waver: how much straight lines waver, 0 not at all, 1 as the grain of wood. blunt: ends do not taper.
-    lines: keep so many lines across the sheet's width, whatever its size, instead of the spacing; None for no number.
+    lines: how many lines cross the sheet's width, whatever its size; None for as many as spacing_pt leaves room for.
     crosses: the tone from which on a second set of lines crosses the first, 1 for never.
     """
 
@@ -86,8 +86,8 @@ class Texture:
     priorities: (s,) ascending.
     whole: strokes are drawn whole or not at all (stipple dots, mortar), never trimmed to a run.
     layers: what the tile is an instance of where that is plain hatching, in the order of drawing.
-    engraving: the lines that swell for which the tile stands where only strokes of one width can be drawn.
-    oriented: no tile but a set of examples, each with its first point on a line of the field and +x along that.
+    engraving: lines that swell; the tile stands for them where only strokes of one width can be drawn.
+    oriented: no tile but a set of examples, each with its first point on a line of the field and +x along the line.
     scales: how it grows with the picture, None where it does not; strokes are those of the natural size.
     """
 

@@ -26,7 +26,7 @@ def workbench(files: dict[str, bytes]) -> Iterator[dict[str, bytes]]:
 
 
 def state(path: str | None) -> changes.State:
-    """What tells whether an input has changed since."""
+    """The state of an input now, by which a change is seen; None for standard input."""
     if path is None or path == "-":
         return None
     return _bench[path] if _bench is not None and path in _bench else changes.of_file(path)

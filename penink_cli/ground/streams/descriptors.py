@@ -1,4 +1,4 @@
-"""Descriptors that are open already: standard input and output, and what names them."""
+"""Descriptors that are open already: standard input and output, and the paths that name descriptors."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ def why(error: OSError) -> str:
 
 
 def own_descriptor(path: str) -> int | None:
-    """N for ``/dev/stdout``, ``/dev/fd/N`` and the like.
+    """The descriptor N that ``/dev/stdout``, ``/dev/fd/N`` or the like names, None for any other path.
 
-    They are written through the descriptor itself: a rename would replace the file that the shell
-    has opened, and opening it again would lose its offset.
+    Such a path is written through the descriptor itself: a rename would replace the file that the
+    shell has opened, and opening the file again would lose its offset.
     """
     names = {"/dev/stdout": 1, "/dev/stderr": 2}
     if path in names:
@@ -35,10 +35,10 @@ def own_descriptor(path: str) -> int | None:
 
 
 def hold_standard() -> None:
-    """Hold the places of those of the descriptors 0 to 2 that the caller has closed.
+    """Fill the places of those of the descriptors 0 to 2 that the caller has closed.
 
-    The next file opened would take such a place, and an edge list be read as standard input. What holds it fails as a
-    closed one does.
+    The next file opened would take such a place, and an edge list be read as standard input. The stand-in is
+    ``/dev/null``, opened the other way round, so that reading or writing it fails as on a closed descriptor.
     """
     for descriptor in (0, 1, 2):
         try:

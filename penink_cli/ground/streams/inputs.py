@@ -70,7 +70,7 @@ def reading(path: str | None) -> Iterator[BinaryIO]:
             raw = _Source(os.open(path, os.O_RDONLY | os.O_CLOEXEC | os.O_NOCTTY), source, owned=True)
         except (OSError, ValueError) as error:  # ValueError: a null character in the name
             reason = why(error) if isinstance(error, OSError) else str(error)
-            changes.note(path, None)
+            changes.note(path, changes.of_file(path))  # it may be there, and only not be read
             raise StreamError(reason, source) from error
     with raw, io.BufferedReader(raw, BUFFER) as stream:
         status = os.fstat(raw.fileno())

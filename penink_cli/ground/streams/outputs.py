@@ -28,7 +28,7 @@ class Output:
         self._pending = bytearray()
 
     def write(self, data: ReadableBuffer) -> int:
-        """Write all of a bytes-like object, C-contiguous where it is an array; its number of bytes."""
+        """Write all of a bytes-like object, which is C-contiguous where it is an array; returns its number of bytes."""
         view = memoryview(data)
         if not view.nbytes:
             return 0
@@ -99,30 +99,40 @@ def writing(path: str | None, binary: bool = True) -> Iterator[Output]:
         return
     assert path is not None
     try:
-        if not path or path.endswith("/"):
-            raise StreamError(os.strerror(errno.EISDIR if path else errno.ENOENT), path or "''")
-        target = os.path.realpath(path)
-        try:
-            status = os.stat(target)
-        except FileNotFoundError:
-            status = None
-        if status is not None and stat.S_ISDIR(status.st_mode):
-            raise StreamError(os.strerror(errno.EISDIR), path)
-        if status is not None and not stat.S_ISREG(status.st_mode):
-            opened = os.open(target, os.O_WRONLY | os.O_CLOEXEC | os.O_NOCTTY)
-            try:
-                yield from _straight(opened, path, binary)
-            finally:
-                os.close(opened)
-            return
-        # A rename would replace a file that its owner has made read-only.
-        if status is not None and not os.access(target, os.W_OK, effective_ids=os.access in os.supports_effective_ids):
-            raise StreamError(os.strerror(errno.EACCES), path)
-    except StreamError:
-        raise
-    except (OSError, ValueError) as error:
+        target, opened = _prepared(path)
+    except (OSError, ValueError) as error:  # ValueError: a null character in the name
+        if isinstance(error, StreamError):
+            raise
         raise StreamError(why(error) if isinstance(error, OSError) else str(error), path) from error
-    yield from _replacing(target, path)
+    if opened is None:
+        yield from _replacing(target, path)
+        return
+    try:
+        yield from _straight(opened, path, binary)
+    finally:
+        os.close(opened)
+
+
+def _prepared(path: str) -> tuple[str, int | None]:
+    """A path, its links followed, and a descriptor of what is there if that is no regular file, else None.
+
+    Raises StreamError, OSError or ValueError where nothing can be written there.
+    """
+    if not path or path.endswith("/"):
+        raise StreamError(os.strerror(errno.EISDIR if path else errno.ENOENT), path or "''")
+    target = os.path.realpath(path)
+    try:
+        status = os.stat(target)
+    except FileNotFoundError:
+        return target, None
+    if stat.S_ISDIR(status.st_mode):
+        raise StreamError(os.strerror(errno.EISDIR), path)
+    if not stat.S_ISREG(status.st_mode):
+        return target, os.open(target, os.O_WRONLY | os.O_CLOEXEC | os.O_NOCTTY)
+    # A rename would replace a file that its owner has made read-only.
+    if not os.access(target, os.W_OK, effective_ids=os.access in os.supports_effective_ids):
+        raise StreamError(os.strerror(errno.EACCES), path)
+    return target, None
 
 
 def _straight(descriptor: int, source: str, binary: bool) -> Iterator[Output]:
@@ -178,7 +188,7 @@ def flush_text() -> None:
 
 def text_failure(error: OSError) -> StreamError:
     """The error line for text that standard output did not take."""
-    # The interpreter would try again at its end, and complain in its own words.
+    # The interpreter would try again at its end, and complain in its own words: it gets /dev/null to write to.
     null = os.open(os.devnull, os.O_WRONLY)
     os.dup2(null, 1)
     os.close(null)

@@ -16,11 +16,11 @@ _targets: dict[tuple[int, int], str] = {}  # device and inode of each file that 
 def keep_inputs(outputs: Iterable[str | None], inputs: Iterable[str | None]) -> None:
     """Refuse a call whose output is one of its inputs, under whatever name, link or redirection.
 
-    Nothing has been opened yet. ``None`` and ``-`` are standard output and standard input. What else the call
-    comes to read, such as the members that a manifest names, is refused by `reading`. Regular files alone can be
-    overwritten: a terminal or ``/dev/null`` may be both.
+    Nothing has been opened yet. ``None`` and ``-`` are standard output and standard input. Inputs that show up later,
+    such as the members that a manifest names, are refused by `reading`. Regular files alone can be
+    overwritten: a terminal or ``/dev/null`` may be both input and output.
 
-    Raises StreamError, which names both.
+    Raises StreamError, which names the output and the input.
     """
     _targets.clear()
     for path in outputs:
@@ -34,14 +34,14 @@ def keep_inputs(outputs: Iterable[str | None], inputs: Iterable[str | None]) -> 
 
 
 def keep(status: os.stat_result, source: str) -> None:
-    """Raise StreamError for an input that the call is to overwrite."""
+    """Raise StreamError if an input, of that status and name, is a file that the call is to overwrite."""
     name = _targets.get((status.st_dev, status.st_ino))
     if name is not None:
         raise StreamError(f"is the same file as the input {printable(source)}, which it would overwrite", name)
 
 
 def _status(path: str | None, standard: int) -> os.stat_result | None:
-    """What a path, or a standard descriptor, leads to; None where that is nothing yet."""
+    """The status of what a path leads to, None for nothing. standard: the descriptor meant by None and ``-``."""
     if on_bench(path):
         return None
     if path is None or path == "-":

@@ -34,7 +34,7 @@ def install_signals() -> None:
     signal.pthread_sigmask(signal.SIG_BLOCK, deadly)
     try:
         threading.Thread(target=_await, args=(deadly,), daemon=True, name="signals").start()
-    except RuntimeError:  # no thread to be had: they kill at once, and the next run removes what is left
+    except RuntimeError:  # no thread can be started: signals kill at once, and the next run removes what is left
         signal.pthread_sigmask(signal.SIG_UNBLOCK, deadly)
 
 

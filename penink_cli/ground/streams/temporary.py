@@ -1,6 +1,6 @@
 """Temporary files, which lie beside their targets.
 
-Each is locked while its writer lives. So the next run can tell the remains of a killed one, which it removes (nothing
+Each is locked while its writer lives. So the next run can tell the remains of a killed run, which it removes (nothing
 cleans up after SIGKILL), from the work of a neighbour.
 """
 
@@ -16,14 +16,17 @@ import threading
 # A short name of their own: a name made from the target's could be longer than the file system allows.
 _NAME = re.compile(r"\.penink-[0-9a-f]{16}\.tmp", re.ASCII)
 
-# Held while a temporary file comes into being or is renamed, and for ever once a signal has come: whoever waits for it
-# then dies of the signal, and does not complain of a file that is gone.
+# Held while a temporary file comes into being or is renamed, and for ever once a signal has come: a thread that then
+# waits for it dies of the signal, and does not complain of a file that is gone.
 _guard = threading.Lock()
 _temporaries: set[str] = set()
 
 
 def create(directory: str) -> tuple[str, int]:
-    """A new temporary file, locked, its mode by the umask as for any new file."""
+    """The path and descriptor of a new temporary file, locked, its mode by the umask as for any new file.
+
+    Raises OSError.
+    """
     import fcntl
 
     while True:
@@ -56,7 +59,7 @@ def remove(path: str) -> None:
 
 
 def remove_all() -> None:
-    """Remove those that there are, and let none come into being any more: the process is about to die."""
+    """Remove all temporary files of this process, which is about to die, and let none come into being any more."""
     _guard.acquire()  # and keep it
     for path in list(_temporaries):
         with contextlib.suppress(OSError):
@@ -82,7 +85,7 @@ def sweep(directory: str) -> None:
 
 
 def sync(descriptor: int) -> None:
-    """Have what was written stored, where that can be asked for."""
+    """Have what was written stored, on file systems that know of storing. Raises OSError."""
     try:
         os.fsync(descriptor)
     except OSError as error:
@@ -91,7 +94,7 @@ def sync(descriptor: int) -> None:
 
 
 def sync_directory(directory: str) -> None:
-    """Make the rename itself durable; the file is whole whether or not the directory can be synced."""
+    """Make the rename itself durable, if the directory can be synced; the file is whole in any case."""
     with contextlib.suppress(OSError):
         descriptor = os.open(directory, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
         try:

@@ -1,7 +1,7 @@
 # cython: boundscheck=False, wraparound=False, cdivision=True
 """Numbers to text in bulk, each followed by what its place in a picture's syntax asks for.
 
-PostScript, SVG and PDF are all long lists of numbers with a few letters between them; this one
+PostScript, SVG and PDF are all long lists of numbers with a few letters between them. This one
 loop writes all three, some 40 times as fast as str and join.
 """
 
@@ -12,8 +12,8 @@ def put(
 ) -> int:
     """Write numbers / 10^decimals without needless zeros, number i followed by word after[i].
 
-    words: all words, one after the other; word w is words[starts[w] : starts[w + 1]].
-    out: at least 21 bytes a number and the words. Returns the number of bytes.
+    numbers, after: (n,). decimals: at most 18. words: all words, one after the other; word w is
+    words[starts[w] : starts[w + 1]]. out: room for 21 bytes a number and for the words. Returns the number of bytes.
     """
     cdef unsigned char[24] digits
     cdef Py_ssize_t i, k

@@ -1,5 +1,5 @@
 """Strokes as pixels.
 
 cover    how much of each pixel ink covers, in bands from the top
-png      the file that holds them
+png      the bands as a PNG file
 """

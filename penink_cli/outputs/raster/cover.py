@@ -10,26 +10,27 @@ from functools import partial
 import numpy as np
 import numpy.typing as npt
 
-from penink_cli.ground import threads as threading
 from penink_cli.ground.model import Strokes
+from penink_cli.ground.threads import in_order
 from penink_cli.outputs.page import Page
 from penink_cli.outputs.raster._compiled import cover as _cover
 
-ROOM = 1 << 21  # bytes of bits a band: about what a processor's own cache holds
+ROOM = 1 << 21  # bytes of bits in a band: about as many as a processor's own cache holds
 
 Band = npt.NDArray[np.uint8]
 
 
 def size(page: Page, dpi: float) -> tuple[int, int]:
-    """Width and height in pixels of a page at a resolution; a part of a pixel is a pixel more."""
-    return tuple(max(1, math.ceil(side * dpi / 72 - 1e-6)) for side in (page.width, page.height))  # type: ignore[return-value]
+    """Width and height in pixels of a page at a resolution, rounded up."""
+    width, height = (max(1, math.ceil(side * dpi / 72 - 1e-6)) for side in (page.width, page.height))
+    return width, height
 
 
 def bands(layers: Sequence[Strokes], page: Page, dpi: float, maxval: int, threads: int = 1) -> Iterator[Band]:
     """Bands (rows, width) of grey values 0 … maxval (≤ 255) from the top; the same for any number of threads.
 
-    The value is maxval · (1 - tone), rounded to the nearest; tone is the share of the pixel's area
-    that any stroke covers. Memory grows with the strokes and the width, not with the height.
+    layers: at least one. The value is maxval · (1 - tone), rounded to the nearest; tone is the share of the pixel's
+    area that strokes cover. Memory grows with the strokes and the width, not with the height.
     """
     width, height = size(page, dpi)
     scale = dpi / 72
@@ -52,13 +53,16 @@ def bands(layers: Sequence[Strokes], page: Page, dpi: float, maxval: int, thread
         _cover.band(points, first, radii, knot_radii, chosen, top, bits, np.empty(padded // 4, np.uint64), greys, out)
         return out
 
-    return threading.in_order((partial(draw, number) for number in range(-(-height // rows))), threads)
+    return in_order((partial(draw, number) for number in range(-(-height // rows))), threads)
 
 
 def _members(
     points: npt.NDArray[np.float64], first: npt.NDArray[np.int64], radii: npt.NDArray[np.float64], rows: int, count: int
 ) -> tuple[npt.NDArray[np.int32], npt.NDArray[np.int64]]:
-    """The strokes that may touch each of ``count`` bands: members[starts[b] : starts[b + 1]]."""
+    """(members, starts): members[starts[b] : starts[b + 1]] are the strokes that may touch band b of ``count``.
+
+    points, first: of the strokes, pixels. radii: (s,) half the largest width of each. rows: pixel rows a band.
+    """
     if not len(radii):
         return np.zeros(0, np.int32), np.zeros(count + 1, np.int64)
     low = np.minimum.reduceat(points[:, 1], first[:-1]) - radii

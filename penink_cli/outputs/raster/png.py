@@ -1,6 +1,6 @@
-"""PNG files, grey or coloured, written in bands: no date, no software's name, the resolution noted.
+"""PNG files, grey or coloured, written in bands, with the resolution and without date or program's name.
 
-An imaging library would want the whole picture at once, and a moment to be imported.
+An imaging library would need the whole picture at once, and time to be loaded.
 """
 
 from __future__ import annotations
@@ -20,9 +20,8 @@ def write(
 ) -> None:
     """Write a PNG of width × height pixels.
 
-    bands: (rows, width) values 0 … 2^bits - 1 from the top, or (rows, width, 3) of sRGB where coloured is true, which
-    has 8 bits. PNG has 1, 2, 4 and 8 bits; values of
-    another depth are stretched to 8.
+    bands: (rows, width) values 0 … 2^bits - 1 from the top. PNG has 1, 2, 4 and 8 bits; values of another depth are
+    stretched to 8. coloured: the bands are (rows, width, 3) of sRGB, and bits is 8.
     """
     width, height = size
     depth = bits if bits in (1, 2, 4) else 8

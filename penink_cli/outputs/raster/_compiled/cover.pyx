@@ -1,32 +1,34 @@
 # cython: boundscheck=False, wraparound=False, cdivision=True
 """How much of each pixel strokes cover: 16 × 16 points a pixel, one bit each.
 
-Where strokes overlap their union counts, not their sum, which areas added up cannot know; bits
-can. A point is inked if it lies in a stroke. 256 points are as many as 8-bit grey has steps; on
+Where strokes overlap their union counts, not their sum. Sums of areas cannot tell the two apart;
+bits can. A point is inked if it lies in a stroke. 256 points are as many as 8-bit grey has steps; on
 a crosshatch at 150 dpi the low-passed picture differs from one of 64 × 64 points by 0.01 % RMS.
 
-A Bézier segment is cut into straight pieces that leave it by at most 1/50 pixel, and the ink of
-a piece is a capsule: what lies within half a pen's width of it, which may grow on the way. Capsules
-are convex, so each row of points meets one in one span, found without rounding error that matters:
-between the two long sides where the row crosses both, else between the outermost of sides and round ends.
+A Bézier segment is cut into straight pieces that leave it by at most 1/50 pixel. The ink of a piece
+is a capsule, all that lies within half a pen's width of it; where the width changes, it is the hull
+of two discs. Both are convex, so each row of points meets one in a single span: between the two long
+sides where the row crosses both, else between the outermost of sides and round ends.
 """
 
 from libc.math cimport fabs, sqrt
 
-STEPS = 16
-cdef double FLAT = 0.02
+cdef double FLAT = 0.02  # pixels that a straight piece may leave its curve by
 
 
 cdef struct Points:
-    # The points of some pixel rows: a bit each, 16 rows of them a pixel row, a word a pixel.
+    # The points of some pixel rows, a bit each: 16 rows of points a pixel row, a word of 16 points a pixel.
     unsigned short* bits
-    Py_ssize_t width  # pixels
-    double top  # the first pixel row
+    Py_ssize_t width  # pixels, and words of a row
+    double top  # number of the first pixel row
     long long rows  # of points
 
 
 cdef inline void _span(unsigned short* row, double left, double right, long long most) noexcept nogil:
-    """Set the points of a row whose middles lie from left to right, in pixels; bit 0 is a pixel's first."""
+    """Set the points of a row whose middles lie between left and right, in pixels. most: the row's last point.
+
+    Bit 0 is the leftmost point of a pixel.
+    """
     cdef long long low, high, a, b, k
     cdef unsigned int first, final
     left = left * 16.0 - 0.5
@@ -124,7 +126,7 @@ cdef void _capsule(const Points* band, double ax, double ay, double bx, double b
 cdef void _cone(
     const Points* band, double ax, double ay, double bx, double by, double ra, double rb
 ) noexcept nogil:
-    """Ink what a disc covers on its way from a to b while its radius goes from ra to rb: the hull of both discs."""
+    """Ink the hull of two discs: what a disc covers on its way from a to b while its radius goes from ra to rb."""
     cdef double dx = bx - ax
     cdef double dy = by - ay
     cdef double length = sqrt(dx * dx + dy * dy)
@@ -219,9 +221,10 @@ def band(
 ) -> None:
     """Draw the strokes `members` into the pixel rows from `top` on.
 
-    points in pixels, radii half the pens' widths; knot_radii those at all knots, or empty where no stroke swells.
-    bits (16 · rows, w), w the width rounded up to a multiple of 4, and counts (w / 4,) are room to work in.
-    greys (257,) maps inked points to the value stored in out (rows, width).
+    points, first: of all strokes, in pixels, see Strokes. radii: half the pens' widths, pixels; knot_radii: half the
+    widths at all knots, or empty where no stroke swells. bits (16 · rows, w), w the width rounded up to a multiple of
+    4, and counts (w / 4,) are room to work in. greys: (257,) maps the number of a pixel's inked points to the value
+    stored in out (rows, width).
     """
     cdef unsigned long long* four
     cdef unsigned long long x
