@@ -195,7 +195,6 @@ def _run(arguments: Sequence[str]) -> int:
         if _lacks_room(error):
             _complain(path, "not enough memory")
             return 1
-
         _complain(path, f"internal error: {type(error).__name__}: {error} (PENINK_DEBUG=1 shows where)")
         return 1
 

@@ -143,8 +143,9 @@ def within(
 ) -> None:
     """Which pixels (rows, w) of the rows from `top` on have a pixel outside the mask (h, w) near.
 
-    most: the square of the distance, pixels, that is near at the most. reach: its root rounded down, at most 100, so that
-    distances fit into 8 bits and their squares into 16: a vector holds the more of them. down: (rows + 2 reach, w),
+    most: the square of the distance, pixels, that is near at the most. reach: its root rounded down, at most 100, so
+    that distances fit into 8 bits and their squares into 16: a vector holds the more of them. down: (rows + 2 reach,
+    w),
     best: (2, w + 2 reach), room to work in.
     """
     cdef Py_ssize_t h = mask.shape[0], w = mask.shape[1], rows = out.shape[0], i, j, k
