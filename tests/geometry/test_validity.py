@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
+from fractions import Fraction
 from itertools import combinations
 
 import numpy as np
@@ -114,3 +117,57 @@ def test_many_edges_that_all_cross_are_refused():
     rng = np.random.default_rng(0)
     with pytest.raises(ArrangementError, match="cross"):
         check(edge_list(rng.uniform(0, 10, (200_000, 2)), np.arange(200_000).reshape(-1, 2)))
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_deep_order_agrees_with_all_pairs(seed):
+    rng = np.random.default_rng(seed)
+    begin = rng.uniform(0, 9, (150, 2))
+    ends = np.clip(begin + rng.normal(0, 1, (150, 2)) * (3.0, 0.3), 0, 10)
+    kept = []
+    for a, b in zip(map(tuple, begin.tolist()), map(tuple, ends.tolist()), strict=True):
+        meets = [k for k, other in enumerate(kept) if meet(a, b, *other)]
+        edges = np.arange(2 * len(kept) + 2).reshape(-1, 2)
+        tried = edge_list([point for edge in [*kept, (a, b)] for point in edge], edges)
+        if meets:
+            with pytest.raises(ArrangementError):
+                check(tried)
+        else:
+            check(tried)
+            kept.append((a, b))
+    assert 40 < len(kept) < 150
+
+
+def test_edges_that_leave_a_vertex_by_nearly_one_slope_are_sorted_exactly():
+    rng = np.random.default_rng(0)
+    across = 2.0 * np.arange(50_000) + 1
+    tips = np.stack([across, across * 0.1], axis=1)
+    tips = np.array(list({Fraction(y) / Fraction(x): (x, y) for x, y in tips.tolist()}.values()))
+    assert len(tips) > 30_000
+    assert len(np.unique(tips[:, 1] / tips[:, 0])) < 10
+    tips = tips[rng.permutation(len(tips))]
+    edges = np.stack([np.zeros(len(tips), np.int64), 1 + np.arange(len(tips))], axis=1)
+    check(edge_list([(0, 0), *tips.tolist()], edges, 200_000, 20_000))
+
+
+#: Edges numbered so that 2654435769 k + 1, mixed to a hash, falls from the outermost inwards on both sides in turn.
+NESTED = """
+import numpy as np
+from penink_cli.geometry.validity import check
+from penink_cli.ground.model import EdgeList
+n = 300_000
+h = np.arange(n, dtype=np.uint32) * np.uint32(2654435769) + np.uint32(1)
+h ^= h >> 15
+h *= np.uint32(2246822519)
+h ^= h >> 13
+rank = np.empty(n)
+rank[np.argsort(h, kind="stable")] = np.arange(n)
+y = n // 2 + np.where(rank % 2, 1, -1) * ((rank + 1) // 2)
+vertices = np.stack([np.stack([rank, y], axis=1), np.stack([np.where(rank, n + 10, n + 5), y], axis=1)], axis=1)
+check(EdgeList(2 * n, n + 10, vertices.reshape(-1, 2), np.arange(2 * n).reshape(-1, 2)))
+"""
+
+
+def test_no_order_of_the_edges_overflows_the_stack():
+    # A tree balanced by a hash of the edges' numbers was a path 300 000 deep for these.
+    subprocess.run([sys.executable, "-c", NESTED], check=True)
