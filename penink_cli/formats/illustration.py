@@ -21,6 +21,7 @@ from typing import Any
 from penink_cli.formats import compact, compact_edges, compact_lines, directions, edge_list, parts, pgm, strict_json
 from penink_cli.formats import lines as lines_format
 from penink_cli.formats import texture as texture_format
+from penink_cli.formats.members import is_compact
 from penink_cli.ground.errors import FormatError, LimitError, PeninkError
 from penink_cli.ground.model import (
     Directions,
@@ -202,19 +203,19 @@ def _length(item: dict[str, Any], name: str, most: float, place: str = "") -> fl
 
 def _samples(data: bytes, max_pixels: int, edges: EdgeList | None) -> tuple[GreyImage, bool]:
     """Samples, and whether they come in the compact form, which has as many levels as they are kept at."""
-    if data.startswith(compact.ALL_SAMPLES):
+    if is_compact(data, compact.ALL_SAMPLES):
         return compact.samples_from(data, max_pixels, edges), True
     return pgm.read(io.BytesIO(data), "", max_pixels), False
 
 
 def _edges(data: bytes, max_pixels: int) -> EdgeList:
-    if data.startswith((compact_edges.EDGES, compact_edges.EDGES_1)):
+    if is_compact(data, (compact_edges.EDGES, compact_edges.EDGES_1)):
         return compact_edges.edges_from(data)
     return edge_list.read(io.BytesIO(data), "", max_pixels)
 
 
 def _directions(data: bytes, samples: GreyImage, max_pixels: int) -> Directions:
-    if data.startswith((compact.DIRECTIONS, compact.DIRECTIONS_1)):
+    if is_compact(data, (compact.DIRECTIONS, compact.DIRECTIONS_1)):
         found = compact.directions_from(data)
     else:
         found = directions.read(io.BytesIO(data), "", max_pixels)
@@ -224,13 +225,13 @@ def _directions(data: bytes, samples: GreyImage, max_pixels: int) -> Directions:
 
 
 def _lines(data: bytes) -> Lines:
-    if data.startswith(compact_lines.ALL_LINES):
+    if is_compact(data, compact_lines.ALL_LINES):
         return compact_lines.lines_from(data)
     return lines_format.read(io.BytesIO(data), "")
 
 
 def _texture(data: bytes) -> Texture:
-    if data.startswith(compact.TEXT):
+    if is_compact(data, (compact.TEXT,)):
         data = compact.text_from(data)
     return texture_format.read(io.BytesIO(data), "")
 

@@ -37,6 +37,15 @@ def read_numbers(data: bytes, at: int, count: int) -> tuple[list[int], int]:
     return values, at
 
 
+def is_compact(data: bytes, known: tuple[bytes, ...]) -> bool:
+    """Whether a member begins as one of these does. Raises FormatError if it is the same kind, of another version."""
+    if data[:4] in known:
+        return True
+    if data[:3] in {magic[:3] for magic in known}:
+        raise FormatError(f"is {data[:4]!r}, which this penink does not know; known are {', '.join(map(repr, known))}")
+    return False
+
+
 def header(data: bytes, magic: bytes, count: int) -> tuple[list[int], bytes]:
     """The whole numbers after the magic bytes, and the code that follows them.
 

@@ -1,4 +1,7 @@
-"""The prologues of the renderers: the numbers of `blasting.constants`, and two more, by one name in both languages."""
+"""The prologues of the renderers: numbers that they share with Python, by one name in both languages.
+
+These are the numbers of `blasting.constants`, those of other modules in `OTHERS`, and for pages those in `FOLLOWING`.
+"""
 
 from __future__ import annotations
 
@@ -35,8 +38,9 @@ OTHERS: dict[str, Any] = {
     "LEAST_TONE": engraving.LEAST_TONE, "TAPER_PT": engraving.TAPER_PT, "TAPER_SHARE": engraving.TAPER_SHARE,
     "TIP_PT": engraving.TIP_PT, "BLUNT": engraving.BLUNT, "WAVER_PT": tracks.WAVER_PT,
     "CROSS_ANGLE": engraving.CROSS_ANGLE,
-    # dashes: least length, and the shortest and the longest stretch of line that holds one
-    "DASH_PT": 3.0, "PERIOD_PT": 11.0, "LONGEST_PERIOD_PT": 40.0,
+    # dashes: least length, and the shortest and the longest stretch of line that holds one; the shortest is not that of
+    # `engraving`, which keeps a least gap as well
+    "DASH_PT": engraving.DASH_PT, "SHORTEST_PERIOD_PT": 11.0, "LONGEST_PERIOD_PT": engraving.LONGEST_PERIOD_PT,
     # every second line leaves off between these tones, in parts of that of the finest lines
     "LEAVES_OFF": (0.8, 1.6),
     # what is shorter than so many of them is a dash
@@ -77,7 +81,7 @@ def shared() -> dict[str, Any]:
 def javascript() -> str:
     """One `const` of all of them."""
     listed = ", ".join(f"{name} = {_number(value, '[%s]', ', ')}" for name, value in (shared() | FOLLOWING).items())
-    return f"// The numbers of penink_cli/blasting/constants.py.\nconst {listed};\n"
+    return f"// The numbers of penink_cli/selfdrawing/constants.py.\nconst {listed};\n"
 
 
 def postscript() -> str:
@@ -88,7 +92,7 @@ def postscript() -> str:
     numbers |= {f"WAVER{i}": value for i, value in enumerate(degrees)}
     numbers |= {f"WAVE{i}": value for i, value in enumerate(wave)}
     lines = [f"/{name} {_number(value, '[ %s ]', ' ')} def" for name, value in numbers.items()]
-    return "% The numbers of penink_cli/blasting/constants.py.\n" + "\n".join(lines) + "\n"
+    return "% The numbers of penink_cli/selfdrawing/constants.py.\n" + "\n".join(lines) + "\n"
 
 
 def _number(value: Any, row: str, between: str) -> str:

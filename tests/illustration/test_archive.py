@@ -68,6 +68,15 @@ def test_archives_of_one_file_for_each_member_are_read(penink, loose):
         assert drawn and drawn == penink("render", *options, loose).stdout
 
 
+@pytest.mark.parametrize("kind", ["samples", "edges", "directions"])
+def test_a_member_of_a_newer_kind_is_said_to_be_one(penink, kind):
+    old = contents((ROOT / "tests/illustration/of_many_files.penink").read_bytes())
+    old[f"1.{kind}"] = old[f"1.{kind}"][:3] + b"9" + old[f"1.{kind}"][4:]
+    run = penink("render", "--width", "2in", input=zipped(old.items(), zipfile.ZIP_DEFLATED))
+    assert run.returncode == 1
+    assert f"PI{kind[0]}9', which this penink does not know" in run.stderr.decode()
+
+
 def test_the_manifest_wastes_nothing(packed):
     members = contents(packed)
     assert list(members) == ["illustration.json", "parts"]

@@ -119,7 +119,7 @@ function stretch(sheet, track, spacing, from, upto, fill) {
   for (let i = 0; i < many; i++) {
     const k = Math.min(from + i, upto - 1), dx = xs[k + 1] - xs[k], dy = ys[k + 1] - ys[k], long = Math.max(1e-6, far(dx, dy)), share = wide ? wide[from + i] : 1;
     const gained = added * FILLED * (Math.abs(dx) + Math.abs(dy)) / long, apart = spacing * share, finest = (engraving.finest + gained) / apart, t = takenUp(got[i], finest, track.odd), duty = t / finest;
-    saw += long / clamp(DASH_PT / Math.max(duty, 1e-3), PERIOD_PT, LONGEST_PERIOD_PT);
+    saw += long / clamp(DASH_PT / Math.max(duty, 1e-3), SHORTEST_PERIOD_PT, LONGEST_PERIOD_PT);
     drawn[i] = duty >= 1 || saw - Math.floor(saw) < duty && t > LEAST_TONE ? 1 : 0;
     const width = clamp(t, finest, MOST_TONE) * apart - gained;
     widths[i] = Math.max(0.02, width + clamp((t - MOST_TONE) / (1 - MOST_TONE), 0, 1) * (CLOSED * apart - width));
