@@ -6,8 +6,6 @@ prologue of the renderers in PostScript and JavaScript. Lengths are points, or u
 
 from __future__ import annotations
 
-from penink_cli.ground.device import DOT
-
 #: Lines of a hatching screen, one above the other; their number is a power of two.
 LINES = 256
 #: Size of a hatching screen's tile.
@@ -41,10 +39,10 @@ BLOCK, PATCH = 9.0, 18.0
 #: Of textures that are not lines half of what is lacking in a block is chance, and more easily added than taken away:
 #: all of it fed back, scribble on coins was 1.1 % too dark, now 0.3.
 TAKEN_UP = 0.5
-#: The pixel of a device of 600 dpi, which tables are meant for, and what it adds to a pen (a dot's gain; a line's is
-#: 0.15): 0.54 is the effective width of a pen of 0.4 on it.
+#: The pixel of a device of 600 dpi, which tables are meant for, and what it adds to a pen, roughly (0.146 to a dot of
+#: 0.4, 0.15 to a line): 0.54 is the effective width of a pen of 0.4 on it.
 PIXEL = 72 / 600
-WIDENED = round(DOT * PIXEL, 2)
+WIDENED = 0.14
 #: The finest pen, in device pixels with its gain, that is painted as wide as it should be: what is left of a thinner
 #: one when the gain is taken off is under one pixel, and that is painted without gain.
 LEAST_PIXELS = 2.45

@@ -49,6 +49,7 @@ def write(
     but its own strokes do not darken one another where they cross. title, author: left out where empty. trim: with a
     trim box around the sheet.
     """
+    import numpy as np
     import pydyf
 
     from penink_cli.outputs import inks
@@ -59,7 +60,8 @@ def write(
     # Sides beyond Acrobat's limit are given in a larger unit.
     unit = max(1.0, max(page.width, page.height) / MOST)
     box = pydyf.Array([0, 0, *(round(side / unit, DECIMALS) for side in (page.width, page.height))])
-    begin = b"1 J 1 j\n"
+    # where there are dots, polygons that are made of curves are as fine as they may be: `ground.device`
+    begin = b"1 J 1 j .2 i\n" if any((np.diff(layer.first) == 1).any() for layer in layers) else b"1 J 1 j\n"
     if unit > 1:
         begin = b"%.9f 0 0 %.9f 0 0 cm\n" % (1 / unit, 1 / unit) + begin
     content = [b"/M gs\n" if over else begin]

@@ -63,6 +63,8 @@ def _write_page(
     if page.landscape:
         out.write(b"90 rotate 0 %s translate\n" % number(-page.height))
     out.write(b"%s %s translate 1 %d div dup scale\n" % (number(page.x), number(page.height - page.y), units))
+    # A half, MIDDLE: whole numbers would lie on the edges of a printer's pixels too often.
+    out.write(b".5 dup translate\n")
     out.write(b"/x 0 def /y 0 def\n" if layers[0][0] else b"")
     at = (0, 0)
     for i, layer in layers:

@@ -75,7 +75,7 @@ FOLLOWING: dict[str, Any] = {
 
 def shared() -> dict[str, Any]:
     """Every number, and every row of numbers, that the renderers share with Python."""
-    return {name: value for name, value in vars(constants).items() if name.isupper() and name != "DOT"} | OTHERS
+    return {name: value for name, value in vars(constants).items() if name.isupper()} | OTHERS
 
 
 def javascript() -> str:

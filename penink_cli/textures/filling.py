@@ -9,15 +9,16 @@ import numpy as np
 
 from penink_cli.ground import exact
 from penink_cli.ground.angles import direction
-from penink_cli.ground.device import DOT, MEAN
+from penink_cli.ground.device import MEAN
 from penink_cli.ground.model import Floats, HatchLayer, Scales, Strokes, Texture
 from penink_cli.textures.even import Torus
 
 TILE_PT = 144.0
 #: What a full tile covers, at the least.
 FULL = 0.978
-#: A stroke paints a little more than its pen is wide: what a device of 600 dpi adds.
-GAIN_PT, DOT_GAIN_PT = MEAN * 72 / 600, DOT * 72 / 600
+#: A stroke paints a little more than its pen is wide: what a device of 600 dpi, whose pixel is so wide, adds.
+PIXEL_PT = 72 / 600
+GAIN_PT = MEAN * PIXEL_PT
 
 Maker = Callable[[np.random.Generator, int], Floats]
 

@@ -12,11 +12,11 @@ whose order could depend on anything but the input, so the bytes are the same ev
 from libc.math cimport fabs, sqrt
 from penink_cli.blasting._compiled.rows cimport Outline, bits_set, meet_rows, whole_places
 
-from penink_cli.ground.device import DOT, EDGE
+from penink_cli.ground.device import EDGE
 
-#: What a device adds to the width of a stroke times |cos θ| + |sin θ|, and to that of a dot, in its pixels.
+#: What a device adds to the width of a stroke times |cos θ| + |sin θ|, in its pixels; see `ground.device` for dots.
 cdef double EDGE_GAIN = EDGE
-cdef double DOT_GAIN = DOT
+cdef double PI = 3.141592653589793
 #: Words with the first n bits set.
 cdef unsigned long long[65] UP_TO
 for _bits in range(65):
@@ -143,7 +143,8 @@ cdef double half_width(double width, double gain, double dx, double dy) noexcept
     """Half the width that the device paints, see `sheet.Sheet`."""
     cdef double length = sqrt(dx * dx + dy * dy)
     if length < 1e-9:
-        return 0.5 * (width + DOT_GAIN * gain)
+        gain *= EDGE_GAIN
+        return 0.5 * sqrt(width * width + (8.0 * gain * width + 4.0 * gain * gain) / PI)
     return 0.5 * (width + EDGE_GAIN * gain * (fabs(dx) + fabs(dy)) / length)
 
 

@@ -6,9 +6,10 @@ import math
 
 import numpy as np
 
+from penink_cli.ground.device import disc
 from penink_cli.ground.model import Floats, Texture
 from penink_cli.textures.even import Torus
-from penink_cli.textures.filling import DOT_GAIN_PT, FULL, fill, tile
+from penink_cli.textures.filling import FULL, PIXEL_PT, fill, tile
 
 
 def make(*, pen: float = 1.0, seed: int = 0) -> Texture:
@@ -21,6 +22,6 @@ def make(*, pen: float = 1.0, seed: int = 0) -> Texture:
         return rng.uniform(0, size, (n, 1, 2))
 
     # the area of a dot as the length of line it stands for
-    area = math.pi / 4 * (pen + DOT_GAIN_PT) ** 2
+    area = math.pi / 4 * float(disc(np.array(pen), PIXEL_PT)) ** 2
     strokes = fill(torus, dots, area / (pen * 0.8), FULL, 0.0, 60, rng)
     return tile("stipple", strokes, [pen] * len(strokes), size, size, seed, whole=True)
