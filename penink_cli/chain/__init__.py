@@ -7,7 +7,7 @@ commands/draw             options, and what does not go together
     request.stages            what the style and the user tell each filter
     job.Job                   one drawing's chain, stages and size
     finer_pens                pens for a small print
-    found                     grey, edges, lines, directions
+    found                     grey; edges, and lines at the same time (Chain.together); directions
     plates                    the grey of each ink
     hatched                   strokes over the hatching, then the hatching
       balanced                  that of several inks: drawn twice, then pressed

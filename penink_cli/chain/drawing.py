@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import shlex
+from functools import partial
 
 from penink_cli.chain import finer_pens, found
 from penink_cli.chain.filters import Chain
-from penink_cli.chain.hatched import hatch
+from penink_cli.chain.hatched import hatch, lines_drawn
 from penink_cli.chain.job import Job
 from penink_cli.chain.kept import Kept
 from penink_cli.chain.plates import Plate, plates
@@ -56,12 +57,17 @@ def draw_one(
 
 
 def _draw(job: Job, file: str | None, shape: tuple[int, ...], output: str | None, page: list[str]) -> None:
-    """The filters in their order. shape: rows and columns of the photo."""
+    """The filters in their order. shape: rows and columns of the photo.
+
+    Lines are found in the photo while edges are found in the grey: either takes a third of the time before hatching.
+    """
     finer_pens.refine(job)
     photo = [*shlex.split(photo_words()), "-" if file is None else file]
+    illustrated = of_illustrations(job.ending)
     composed, size = found.composed(job, photo, shape)
-    edges = found.edges(job, composed, size)
-    lines = found.lines(job, photo)
+    edges, (lines, drawn) = job.chain.together(
+        partial(found.edges, job, composed, size), partial(_lines, job, photo, found_alone=illustrated)
+    )
     directions = found.directions(job, photo, edges, lines)
     if job.inks is None:
         of_each = [Plate(composed, size)]
@@ -69,9 +75,15 @@ def _draw(job: Job, file: str | None, shape: tuple[int, ...], output: str | None
         of_each = plates(job, [composed], size)
     else:
         of_each = plates(job, photo, (shape[1], shape[0]))
-    if of_illustrations(job.ending):
+    if illustrated:
         from penink_cli.chain.manifest import illustrate
 
         illustrate(job, of_each, size, edges, lines, directions, output, page)
         return
-    hatch(job, of_each, size, edges, lines, directions, output, page)
+    hatch(job, of_each, size, edges, lines, drawn, directions, output, page)
+
+
+def _lines(job: Job, photo: list[str], *, found_alone: bool) -> tuple[str | None, list[str]]:
+    """The telling lines, if there are to be any, and their strokes."""
+    lines = found.lines(job, photo)
+    return lines, [] if found_alone or lines is None else [lines_drawn(job, lines)]

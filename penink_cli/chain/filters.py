@@ -15,8 +15,10 @@ import click
 
 from penink_cli.chain.kept import Kept
 from penink_cli.ground import streams
+from penink_cli.ground import threads as threading
 from penink_cli.ground.changes import noting
 from penink_cli.ground.errors import PeninkError
+from penink_cli.ground.turns import First, Second, in_turn, together
 from penink_cli.main import penink
 from penink_cli.options.common import warning_once
 from penink_cli.options.plates import PLACE
@@ -30,6 +32,8 @@ class Chain:
         say: Callable[[str], None], step: Callable[[], None], kept: Kept | None = None,
     ):  # fmt: skip
         self._bench, self._say, self._step, self._kept = bench, say, step, kept
+        self._threads = threading.count(threads)
+        self._program = _program()  # a thread that runs filters has no context to ask
         self._taken = {path for path in taken if path is not None}
         self._standard_input = "-"
         self._common = {"quiet": "--quiet"}
@@ -83,7 +87,7 @@ class Chain:
         else:
             with noting() as read:
                 try:
-                    command.main([*common, *words, *target], prog_name=_program(), standalone_mode=False)
+                    command.main([*common, *words, *target], prog_name=self._program, standalone_mode=False)
                 except PeninkError:
                     if may_fail:
                         return False
@@ -93,8 +97,12 @@ class Chain:
                     kept.keep((*call, name), read, self._bench[name])
         by_hand = (self._standard_input if word == "-" else word for word in call)
         self._say(shlex.join(["penink", *by_hand, *target]))
-        self._step()
+        in_turn(self._step)
         return True
+
+    def together(self, first: Callable[[], First], second: Callable[[], Second]) -> tuple[First, Second]:
+        """Run filters that need nothing of each other at the same time; all looks as if it were one after the other."""
+        return together(first, second, self._threads)
 
     def lines(self, name: str) -> int:
         """How many lines of text a file on the bench has: of strokes, one more than there are strokes."""

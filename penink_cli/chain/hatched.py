@@ -10,11 +10,14 @@ from penink_cli.outputs.registry import writer
 
 
 def hatch(
-    job: Job, plates: list[Plate], size: tuple[int, int], edges: str, lines: str | None, directions: str | None,
-    output: str | None, page: list[str],
+    job: Job, plates: list[Plate], size: tuple[int, int], edges: str, lines: str | None, drawn: list[str],
+    directions: str | None, output: str | None, page: list[str],
 ) -> None:  # fmt: skip
-    """Draw all plates and write them. size: width and height of the grey, pixels; page: words for what writes."""
-    over = _over(job, size, edges, lines)
+    """Draw all plates and write them.
+
+    size: width and height of the grey, pixels; drawn: strokes over the hatching; page: words for what writes.
+    """
+    over = [*drawn, *_outlines(job, size, edges)]
     along = ["--directions", directions] if directions else []
     white = ["--lines", lines] if lines else []
     greys = [_enlarged(job, plate, edges) for plate in plates]
@@ -47,17 +50,18 @@ def hatch(
     job.chain.run(by, [*page, *hatchings, *over], output)
 
 
-def _over(job: Job, size: tuple[int, int], edges: str, lines: str | None) -> list[str]:
-    """Strokes over the hatching, which are ink before it is laid."""
-    result = []
-    if lines:
-        told = [*job.on_paper, *job.device, *job.words("lines", "lines")]
-        result.append(job.run("lines", [*told, lines], "lines.jsonl"))
-    if "outline" in job.stages:
-        least = [] if "min-length" in job.stages["outline"] else ["--min-length", str(least_length(size))]
-        told = [*job.on_paper, *job.device, *job.words("outline", "outline"), *least]
-        result.append(job.run("outline", [*told, edges], "outlines.jsonl"))
-    return result
+def lines_drawn(job: Job, lines: str) -> str:
+    """Strokes along the telling lines, which are ink before hatching is laid."""
+    return job.run("lines", [*job.on_paper, *job.device, *job.words("lines", "lines"), lines], "lines.jsonl")
+
+
+def _outlines(job: Job, size: tuple[int, int], edges: str) -> list[str]:
+    """Strokes along edges, where there are to be any, which are ink before hatching is laid."""
+    if "outline" not in job.stages:
+        return []
+    least = [] if "min-length" in job.stages["outline"] else ["--min-length", str(least_length(size))]
+    told = [*job.on_paper, *job.device, *job.words("outline", "outline"), *least]
+    return [job.run("outline", [*told, edges], "outlines.jsonl")]
 
 
 def _enlarged(job: Job, plate: Plate, edges: str) -> str:

@@ -13,6 +13,6 @@ angles      directions on the sheet; shapes: whether two grids may be of one pic
 gaussian    a low-pass of pictures
 colour      sRGB's curve and CIE Lab; codes: `#rrggbb`
 masks       connected parts of a mask, and distances from it
-threads     work shared out among threads
+threads     work shared out among threads; turns: two things at the same time, told one after the other
 recall      results remembered while `draw --watch` draws again
 """

@@ -5,27 +5,28 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
+from contextvars import ContextVar
 
 #: Device, inode, mode, size and time of a file, the bytes of a file on the workbench, or None where there is no file.
 State = tuple[int, ...] | bytes | None
 
-_noted: list[dict[str, State]] = []
+_noted: ContextVar[tuple[dict[str, State], ...]] = ContextVar("noted", default=())
 
 
 @contextmanager
 def noting() -> Iterator[dict[str, State]]:
-    """The inputs that are opened while the block runs: their states at that moment, by their names."""
+    """The inputs that the block opens: their states at that moment, by their names; not those that others open."""
     read: dict[str, State] = {}
-    _noted.append(read)
+    before = _noted.set((*_noted.get(), read))
     try:
         yield read
     finally:
-        _noted.pop()
+        _noted.reset(before)
 
 
 def note(path: str, state: State) -> None:
     """Tell every block of `noting` that an input is opened, or could not be. The first state of a name is kept."""
-    for read in _noted:
+    for read in _noted.get():
         read.setdefault(path, state)
 
 

@@ -1,16 +1,27 @@
-"""Work shared among threads. The compiled loops let go of Python's lock, so plain threads are enough."""
+"""Work shared among threads. The compiled loops let go of Python's lock, so plain threads are enough.
+
+Where shared work shares work again no more threads begin than are not at work elsewhere: as many work at a time as were
+asked for, however deep they are nested. A thread works within the context of who shares (Python's `contextvars`).
+"""
 
 from __future__ import annotations
 
 import os
 import threading
+from collections import deque
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
+from contextvars import Context, copy_context
 from functools import partial
 from typing import TypeVar
 
 T = TypeVar("T")
 
 _most: list[int | None] = [None]  # how many threads `count` says where it is given no number
+_ARENA_MAX = -8  # of malloc.h
+_working = 1  # threads that are at work now, the one that everything began in among them
+_threads = _busy = 0  # threads that have been begun, and those of them that are at work
+_change = threading.Condition()  # of all these
 
 
 def count(threads: int | None) -> int:
@@ -34,7 +45,7 @@ def share(tasks: Sequence[Callable[[], object]], threads: int) -> None:
         for task in tasks:
             task()
         return
-    for _ in in_order(iter(tasks), threads, ahead=len(tasks)):
+    for _ in in_order(iter(tasks), min(threads, len(tasks)), ahead=len(tasks)):
         pass
 
 
@@ -46,10 +57,12 @@ def ranges(work: Callable[[int, int], object], total: int, size: int) -> list[Ca
 def in_order(tasks: Iterator[Callable[[], T]], threads: int, ahead: int | None = None) -> Iterator[T]:
     """Results in the order of the tasks, computed by several threads, at most `ahead` of them waiting.
 
-    The caller's own thread works too, so that two threads cost one start. Where the system lets no further thread start
-    the others do its work. An exception of a task, or of the iterator of tasks, is raised here.
+    The caller's own thread works too, and waits for tasks that others do and not for others that have not begun: where
+    all processors are busy that may take longer than the work. Where the system lets no further thread start the others
+    do its work. An exception of a task, or of the iterator of tasks, is raised here.
     """
-    if threads <= 1:
+    crew = _Crew(threads - 1)
+    if not crew.called:
         for task in tasks:
             yield task()
         return
@@ -57,14 +70,15 @@ def in_order(tasks: Iterator[Callable[[], T]], threads: int, ahead: int | None =
     lock = threading.Condition()
     ready: dict[int, T] = {}
     failed: list[BaseException] = []
-    taken = delivered = 0
+    taken = delivered = doing = 0
     finished = False
 
     def take(*, wait: bool) -> tuple[int, Callable[[], T]] | None:
-        nonlocal taken, finished
+        nonlocal taken, finished, doing
         with lock:
             while wait and not finished and taken - delivered >= ahead:
-                lock.wait()
+                with _at_rest():
+                    lock.wait()
             if finished or taken - delivered >= ahead:
                 return None
             try:
@@ -79,10 +93,11 @@ def in_order(tasks: Iterator[Callable[[], T]], threads: int, ahead: int | None =
                 lock.notify_all()
                 return None
             taken += 1
+            doing += 1
             return taken - 1, task
 
     def work(*, wait: bool) -> bool:
-        nonlocal finished
+        nonlocal finished, doing
         mine = take(wait=wait)
         if mine is None:
             return False
@@ -93,10 +108,12 @@ def in_order(tasks: Iterator[Callable[[], T]], threads: int, ahead: int | None =
             with lock:
                 failed.append(error)
                 finished = True
+                doing -= 1
                 lock.notify_all()
             return False
         with lock:
             ready[number] = result
+            doing -= 1
             lock.notify_all()
         return True
 
@@ -104,21 +121,15 @@ def in_order(tasks: Iterator[Callable[[], T]], threads: int, ahead: int | None =
         while work(wait=True):
             pass
 
-    others: list[threading.Thread] = []
     try:
-        for _ in range(threads - 1):
-            other = threading.Thread(target=labour, daemon=True)
-            try:
-                other.start()
-            except RuntimeError:  # too many processes, or no memory for a stack
-                break
-            others.append(other)
+        crew.begin(labour)
         while True:
             while delivered not in ready and work(wait=False):
                 pass
             with lock:
                 while delivered not in ready and not failed and not (finished and delivered >= taken):
-                    lock.wait()
+                    with _at_rest():
+                        lock.wait()
                 if failed:
                     raise failed[0]
                 if delivered not in ready:
@@ -131,5 +142,97 @@ def in_order(tasks: Iterator[Callable[[], T]], threads: int, ahead: int | None =
         with lock:
             finished = True
             lock.notify_all()
-        for other in others:
-            other.join()
+            with _at_rest():
+                while doing:
+                    lock.wait()
+        crew.dismiss()
+
+
+class _Crew:
+    """Threads that help with some work: as many as are wanted, and no more than are not at work elsewhere.
+
+    They are kept from one work to the next. To begin a thread takes as long as a band of a picture does.
+    """
+
+    def __init__(self, wanted: int):
+        global _working  # noqa: PLW0603
+        with _change:
+            self.called = max(0, min(wanted, wanted + 1 - _working))
+            _working += self.called
+
+    def begin(self, labour: Callable[[], object]) -> None:
+        """Let each of them labour, within the context of the caller, as soon as it can."""
+        global _threads  # noqa: PLW0603
+        with _change:
+            _posts.extend((self, copy_context(), labour) for _ in range(self.called))
+            _change.notify(self.called)
+            while len(_posts) > _threads - _busy:
+                if not _threads:
+                    _share_heap()
+                try:
+                    threading.Thread(target=_serve, daemon=True).start()
+                except RuntimeError:  # too many processes, or no memory for a stack
+                    break
+                _threads += 1
+
+    def dismiss(self) -> None:
+        """Nothing is left to do for those who have not begun."""
+        global _working  # noqa: PLW0603
+        with _change:
+            for post in [post for post in _posts if post[0] is self]:
+                _posts.remove(post)
+            _working -= self.called
+            self.called = 0
+
+    def leave(self) -> None:
+        """One of them has ended."""
+        global _working  # noqa: PLW0603
+        if self.called:
+            self.called -= 1
+            _working -= 1
+
+
+_posts: deque[tuple[_Crew, Context, Callable[[], object]]] = deque()
+
+
+def _serve() -> None:
+    while True:
+        _labour()
+
+
+def _labour() -> None:
+    """Wait for work and do it; nothing of it is held on to afterwards."""
+    global _busy  # noqa: PLW0603
+    with _change:
+        while not _posts:
+            _change.wait()
+        crew, context, labour = _posts.popleft()
+        _busy += 1
+    context.run(labour)
+    with _change:
+        crew.leave()
+        _busy -= 1
+
+
+def _share_heap() -> None:
+    """Let all threads allocate from one heap, where the C library is one (glibc) that would give each its own.
+
+    What a thread has freed is kept for it alone: a drawing takes a tenth more memory so, and is no faster.
+    """
+    import ctypes  # numpy has loaded it
+
+    with suppress(AttributeError, OSError, TypeError):
+        ctypes.CDLL(None).mallopt(_ARENA_MAX, 1)
+
+
+@contextmanager
+def _at_rest() -> Iterator[None]:
+    """While the block runs this thread waits, and another may work."""
+    global _working  # noqa: PLW0603
+    with _change:
+        _working -= 1
+    try:
+        yield
+    finally:
+        with _change:
+            _working += 1

@@ -97,15 +97,18 @@ def detect_lines(
     else:
         given = directions(height, width)
         cos2, sin2 = (np.ascontiguousarray(part, np.float32) for part in (given.cos2, given.sin2))
+    # A bank takes more room than all else together: spots come before it, and the second after the first.
+    things = spots(picture, threads) if black else []
     fine = oriented.responses(even, *FINE, threads)
     sides = _weighed(fine, threads)
+    dark = _lines(_traced(fine, 1.0, HIGH, tone, cos2, sin2, sides), shortest) if black else []
+    light = _lines(_traced(fine, -1.0, WHITE_HIGH, 1 - tone, cos2, sin2, sides), shortest) if white else []
+    del fine
     found: list[_Line] = []
     if black:
         strong = blurred(sides.most[0], 16.0, threads)
-        things = spots(picture, threads)
         inside, about = (covered(things, picture.shape, margin) for margin in BESIDE_SPOT)
-        strokes = _lines(_traced(fine, 1.0, HIGH, tone, cos2, sin2, sides), shortest)
-        strokes = [line for line in strokes if not _within(line.points, inside)]
+        strokes = [line for line in dark if not _within(line.points, inside)]
         half, tone2, cos, sin = (halved(part, threads) for part in (even, tone, cos2, sin2))
         coarse = oriented.responses(half, *COARSE, threads)
         of_coarse = _weighed(coarse, threads)
@@ -114,10 +117,7 @@ def detect_lines(
         found += strokes
         found += [line for line in broad if _far(line.points, near) and not _within(line.points, about)]
         found += [_spot_line(spot, strong) for spot in things]
-    if white:
-        light = _traced(fine, -1.0, WHITE_HIGH, 1 - tone, cos2, sin2, sides)
-        lit = _lines(light, shortest)
-        found += [line.made_white() for line, ridge in zip(lit, _ridges(lit, picture)) if ridge >= RIDGE]
+    found += [line.made_white() for line, ridge in zip(light, _ridges(light, picture)) if ridge >= RIDGE]
     found = [line for line in found if line.rank >= LEAST_RANK and not _at_rim(line, picture.shape)]
     found.sort(key=lambda line: -line.rank)
     return _assembled(found, tone, columns, rows, width, height)

@@ -13,6 +13,7 @@ import click
 
 from penink_cli.ground import streams
 from penink_cli.ground.errors import ParameterError, in_quotes, printable
+from penink_cli.ground.turns import in_turn
 from penink_cli.ground.units import parse_length
 
 if TYPE_CHECKING:
@@ -278,7 +279,11 @@ verbose_option = click.option(
 
 def reporter(verbose: bool) -> Callable[[str], None]:
     """What takes lines for --verbose: to standard error, or nowhere."""
-    return (lambda line: click.echo(line, err=True)) if verbose else (lambda line: None)
+    return _said if verbose else (lambda line: None)
+
+
+def _said(line: str) -> None:
+    in_turn(functools.partial(click.echo, line, err=True))
 
 
 _warned: set[str] | None = None  # what has been warned of, where each thing is said once
@@ -300,12 +305,17 @@ def warn(line: str, about: str | None = None) -> None:
 
     about: what the line is about, where filters say it in different words.
     """
-    if _warned is not None:
-        if (about or line) in _warned:
-            return
-        _warned.add(about or line)
     context = click.get_current_context(silent=True)
-    click.echo(f"{context.command_path if context else 'penink'}: warning: {printable(line)}", err=True)
+    program = context.command_path if context else "penink"
+
+    def say() -> None:
+        if _warned is not None:
+            if (about or line) in _warned:
+                return
+            _warned.add(about or line)
+        click.echo(f"{program}: warning: {printable(line)}", err=True)
+
+    in_turn(say)
 
 
 def processors() -> int:

@@ -3,13 +3,15 @@
 Run as ``python -m tests.benchmarks.draw [stages] [watch] [against CHECKOUT] [half|two|twelve …] [true|house …]``. A
 portrait with a camera's grain, as a JPEG of half a megapixel, two and twelve, is drawn 6 in wide. Times are of the
 processor, all threads together; Canny's detector of scikit-image (sigma 2) on the same photograph in the same run is
-the unit beside them.
+the unit beside them. What each filter takes of the processor is told of one thread, for with more of them filters run
+at the same time; of more it is told when each began and ended on the wall.
 
 `watch`: seconds from the saving of a style or of somebody's strokes to the drawing's being there again, while
 ``draw --watch`` follows them: on the wall, so on a quiet machine alone; and of the processor.
 
 `against`: the same drawings by this checkout and by an older one that is built, in turn and several times, so that a
-machine's other work slows both: medians, and this one's share of the older one's, filter by filter.
+machine's other work slows both: medians, and this one's share of the older one's, filter by filter where one thread
+draws, and the whole where all do.
 """
 
 import json
@@ -55,19 +57,23 @@ def canny(path):
 
 
 def child():
-    """One call of `draw` in this process; prints what each filter took, start-up and the rest beside them, as JSON."""
+    """One call of `draw` in this process, told as JSON.
+
+    spent: seconds of processor by filter, start-up and the rest beside them. spans: when each began and ended, seconds.
+    """
     from penink_cli.__main__ import main as penink  # as it is called, with what it sets before anything else
     from penink_cli.chain import filters
 
-    spent = {"start": time.process_time()}
+    spent, spans = {"start": time.process_time()}, []
     run = filters.Chain.run
 
     def timed(self, filter_name, *rest, **named):
-        start = time.process_time()
+        start, began = time.process_time(), time.perf_counter()
         try:
             return run(self, filter_name, *rest, **named)
         finally:
             spent[filter_name] = spent.get(filter_name, 0) + time.process_time() - start
+            spans.append((filter_name, began - wall, time.perf_counter() - wall))
 
     filters.Chain.run = timed
     wall = time.perf_counter()
@@ -80,7 +86,7 @@ def child():
     wall = time.perf_counter() - wall
     total = time.process_time()
     spent["rest"] = total - sum(spent.values())
-    json.dump({"total": total, "wall": wall, "MB": peak(), "spent": spent}, sys.stdout)
+    json.dump({"total": total, "wall": wall, "MB": peak(), "spent": spent, "spans": spans}, sys.stdout)
 
 
 def peak():
@@ -109,7 +115,10 @@ def stages(folder, sizes, drawings):
                 options = ["--style", style, "--width", "6in", f"--threads={threads}"]
                 took, result = drawn(photo, folder / f"d{ending}", *options)
                 results.append(result)
-                each = ", ".join(f"{name} {seconds:.2f}" for name, seconds in took["spent"].items())
+                if threads == 1:
+                    each = ", ".join(f"{name} {seconds:.2f}" for name, seconds in took["spent"].items())
+                else:
+                    each = ", ".join(f"{name} {began:.2f}-{ended:.2f}" for name, began, ended in took["spans"])
                 print(f"  {style} {ending}, {threads} thread{'s' * (threads > 1)}: {took['total']:.2f} s of processor"
                       f" ({took['total'] / unit:.1f} x canny), {took['wall']:.2f} s on the wall, {took['MB']:.0f} MB\n"
                       f"    {each}", flush=True)  # fmt: skip
@@ -124,17 +133,25 @@ def against(folder, sizes, drawings, older):
         portrait(photo, SIZES[size])
         for style, ending in drawings:
             options = ["--style", style, "--width", "6in"]
-            runs, bytes_of = {older: [], HERE: []}, {}
+            ways = {"all threads": [], "one thread": ["--threads=1"]}
+            runs, bytes_of = {(checkout, way): [] for checkout in (older, HERE) for way in ways}, {}
             for turn in range(TURNS + 1):
-                for checkout, took in runs.items():
-                    one, bytes_of[checkout] = drawn(photo, folder / f"d{ending}", *options, checkout=checkout)
+                for (checkout, way), took in runs.items():
+                    told = [*options, *ways[way]]
+                    one, bytes_of[checkout] = drawn(photo, folder / f"d{ending}", *told, checkout=checkout)
                     if turn:
                         took.append(one)
             print(f"{SIZES[size][0]} x {SIZES[size][1]} pixels, {style} {ending}: older, this, this by older;",
                   "the same bytes" if bytes_of[HERE] == bytes_of[older] else "OTHER BYTES")  # fmt: skip
-            for name in ("total", "wall", "MB", *runs[HERE][0]["spent"]):
-                old, new = (statistics.median(_figure(one, name) for one in took) for took in runs.values())
-                print(f"  {name:<18}{old:8.3f}{new:8.3f}" + (f"{new / old:7.2f}" if old else ""), flush=True)
+            for way in ways:
+                print(f"  {way}")
+                filters = runs[HERE, way][0]["spent"] if way == "one thread" else ()
+                for name in ("total", "wall", "MB", *filters):
+                    old, new = (
+                        statistics.median(_figure(one, name) for one in runs[checkout, way])
+                        for checkout in (older, HERE)
+                    )
+                    print(f"    {name:<18}{old:8.3f}{new:8.3f}" + (f"{new / old:7.2f}" if old else ""), flush=True)
 
 
 def _figure(took, name):

@@ -158,6 +158,15 @@ def test_every_option_of_draw_is_in_the_chain_it_prints(penink, photo, output, t
     assert (tmp_path / output).read_bytes() == direct
 
 
+@pytest.mark.parametrize("more", [[], ["--inks", "cmyk"], ["--style", "comic", "--as", "penink"]], ids=" ".join)
+def test_threads_change_nothing_of_what_is_said(penink, photographs, more):
+    """Filters that run at the same time say what they have to say one after the other."""
+    call = ["draw", photographs("coins"), "--width", "30pt", "--verbose", *more]
+    one, three = (penink(*call, "--threads", count) for count in ("1", "3"))
+    assert one.returncode == 0 and one.stderr.count(b"penink ") > 4
+    assert (three.stdout, three.stderr) == (one.stdout, one.stderr)
+
+
 def test_a_photo_from_standard_input_is_a_file_in_the_chain_that_draw_prints(penink, photo, tmp_path):
     """Several filters read it, and standard input has it but once."""
     data = photo.read_bytes()
