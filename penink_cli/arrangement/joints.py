@@ -1,4 +1,4 @@
-"""Loose ends of chains, joined to the edges that they stop short of."""
+"""Loose ends of chains, joined to the edges before which they stop."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ from penink_cli.ground.model import Floats
 
 Ints32 = npt.NDArray[np.int32]
 
-_TRIM = 1.2  # of the blur: farther from a junction the other edge does not bend an end noticeably
+_TRIM = 1.2  # in parts of the blur: so near to a junction the other edge bends an end noticeably
 
 
 @dataclass(frozen=True, eq=False)
 class Ends:
     """The loose ends of chains, and what each would meet if it went on straight.
 
-    at: (n,) places in `Chains.order`; inward: (n,) 1 or -1, the way into the chain; length: (n,)
-    points of the chain; trim: (n,) points next to the end that are not to be trusted.
-    start, direction: (n, 2) where the straight line leaves the chain, and whither.
-    target: (n,) edge point ahead, -1 for none; cost: (n,) how dear it is to go there, pixels.
-    on_frame: (n, 2) where the line meets the frame, travel: (n,) how far away. radius: how far ends go.
+    at: (n,) places in `Chains.order`. inward: (n,) 1 or -1, the way from the end into the chain. length: (n,) points of
+    the chain. trim: (n,) points next to the end that are bent by another edge.
+    start, direction: (n, 2) where the straight line leaves the chain, and its unit vector.
+    target: (n,) edge point ahead, -1 for none. cost: (n,) of going there: pixels ahead, and twice those aside.
+    on_frame: (n, 2) where the line meets the frame. travel: (n,) how far that is, pixels. radius: how far ends may go.
     """
 
     at: npt.NDArray[np.intp]
@@ -44,12 +44,12 @@ class Ends:
 
     @property
     def to_frame(self) -> npt.NDArray[np.bool_]:
-        """Which (n,) go to the frame."""
+        """Which ends (n,) go to the frame."""
         return (self.travel < self.radius) & (self.travel < self.cost)
 
     @property
     def meets(self) -> npt.NDArray[np.bool_]:
-        """Which (n,) go to an edge point."""
+        """Which ends (n,) go to an edge point."""
         return (self.target >= 0) & ~self.to_frame
 
 
@@ -58,10 +58,10 @@ def loose_ends(points: EdgePoints, chains: Chains, blur: float, hosts: npt.NDArr
 
     Args:
         points: edge points.
-        chains: runs of them.
+        chains: chains of edge points.
         blur: standard deviation (pixels) of the whole blur, the photo's and the detector's, which
             is how far junctions reach.
-        hosts: (c,) the chains that may be met; all where None.
+        hosts: (c,) whether each chain may be met; None for all.
 
     """
     count = len(points.pixel)
@@ -93,12 +93,12 @@ def loose_ends(points: EdgePoints, chains: Chains, blur: float, hosts: npt.NDArr
 
 @dataclass(frozen=True, eq=False)
 class Joints:
-    """What closes the gaps at loose ends.
+    """Vertices and links that close the gaps at loose ends.
 
     trimmed: (p,) whether an entry of `Chains.order` is left out: near a junction the gradient is
-        that of the other edge, and the end bends.
+        that of the other edge, and bends the end.
     places: (f, 2) x, y of new vertices, on the frame or at corners.
-    links: (j, 2) edge points, or places (numbered from the number of points on), cheapest first.
+    links: (j, 2) pairs of edge points and places, cheapest first; the numbers of places go on after those of points.
     """
 
     trimmed: npt.NDArray[np.bool_]
@@ -109,11 +109,11 @@ class Joints:
 def join_ends(points: EdgePoints, chains: Chains, blur: float) -> Joints:
     """Join loose ends that stop short of another chain, of another end, or of the frame.
 
-    An end is cut back by what the other edge's gradient has bent, and goes on straight from there.
+    The points of an end that the other edge's gradient has bent are cut off, and the end goes on straight from there.
 
     Args:
         points: edge points.
-        chains: runs of them.
+        chains: chains of edge points.
         blur: standard deviation (pixels) of the whole blur, the photo's and the detector's, which
             is how far junctions reach.
 
@@ -173,7 +173,7 @@ def join_ends(points: EdgePoints, chains: Chains, blur: float) -> Joints:
 
 
 def _frame_ahead(start: Floats, direction: Floats, shape: tuple[int, int]) -> tuple[Floats, Floats]:
-    """Where (n, 2) lines from inside meet the frame, and how far (n,) they travel; inf where they graze it."""
+    """Where lines from points inside meet the frame (n, 2), and how far that is (n,); inf where they only graze it."""
     height, width = shape
     gap = np.stack([start[:, 0], width - start[:, 0], start[:, 1], height - start[:, 1]])
     outward = np.stack([-direction[:, 0], direction[:, 0], -direction[:, 1], direction[:, 1]])

@@ -3,6 +3,6 @@
 detection.detect_directions
   evidence.tangents   what the photo's tones say, place by place, and how much it counts
   polylines           the user's strokes and telling lines as evidence
-  solving.solved      the smooth field that this leaves, its links cut at edges, its knots calmed
-reading.at_size       the field as large as the grey at hand, by the same reconstruction
+  solving.solved      the smooth field that follows the evidence, cut at edges, with few singularities
+reading.at_size       the field at any size, by the reconstruction that also enlarges the grey
 """

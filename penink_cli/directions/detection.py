@@ -4,22 +4,22 @@ from __future__ import annotations
 
 import numpy as np
 
-from penink_cli.composition.filters import blurred, shrunk
+from penink_cli.composition.filters import shrunk
 from penink_cli.directions import evidence
 from penink_cli.directions.polylines import crossed, of_lines, of_strokes
 from penink_cli.directions.solving import solved
 from penink_cli.ground.angles import direction
 from penink_cli.ground.model import ColourImage, Directions, EdgeList, Floats, GreyImage, Lines, Strokes
 
-ANGLE = -45.0
+ANGLE = -45.0  # degrees; for all four see `detect_directions`
 FOLLOW = 0.5
 NOISE = 0.006
 SIZE = 96
-_LINES = 2.0  # the weight of a telling line that crosses a cell
-_STROKES = 6.0  # … and of the user's own
-_BESIDE = 2.5  # σ, samples: how far around the user's strokes the photo does not count
+_LINES = 2.0  # the weight of a telling line that crosses a sample
+_STROKES = 6.0  # the weight of a stroke of the user's
+_BESIDE = 2.5  # σ, samples: around the user's strokes the photo does not count
 _PEAK = 0.16  # the greatest value of a line one sample wide that a Gaussian of that σ has blurred
-_PULL, _LEAST = 0.1, 0.003  # the weight of the hatch's own angle, where the form is followed by half and wholly
+_PULL, _LEAST = 0.1, 0.003  # the weight of the hatch's own angle is _LEAST where follow is 1, _PULL more where it is .5
 
 
 def detect_directions(
@@ -37,13 +37,13 @@ def detect_directions(
     """The direction field of a photograph, of `size` samples along its long side or as many as it has pixels.
 
     edges: its discontinuity edges, across which the field is not smooth. angle: degrees from x towards y, of strokes
-    where nothing is known of the form; follow: 0 that angle alone … 1 the form wherever it leads. across: along the
-    gradient of the tones instead of across it. noise: a mean gradient (grey, of 1 a pixel of the photo at 384) below
-    which places count less and less. strokes: the user's own, whatever the photo says, on a sheet that stands for it.
-    lines: the telling ones.
+    where nothing is known of the form. follow: 0 for that angle alone … 1 for the form wherever it leads. across:
+    strokes run along the gradient of the tones instead of across it. noise: a mean gradient, in grey of 1 a pixel of
+    the photo at 384 pixels; places with less gradient count less and less. strokes: the user's own, which hold whatever
+    the photo says, on a sheet that stands for the photo. lines: its telling lines.
 
-    Confidence is the part that evidence has in a direction, the rest being the angle's; not below 1/254, and 1 where
-    the user's strokes are.
+    Confidence is the part of a direction that comes from evidence, and not from the angle. It is at least 1/254, and 1
+    where the user's strokes are.
     """
     edges = EdgeList(1, 1) if edges is None else edges
     height, width = photo.values.shape[:2]
@@ -55,8 +55,8 @@ def detect_directions(
         drawn, much = crossed(of_lines(lines), rows, columns)
         trust = _LINES * _means(found.trust, rows, columns)
         for k in range(2):
-            vectors[..., k] += _blurred(drawn[..., k] * trust, 1.0)
-        weight += _blurred(much * trust, 1.0)
+            vectors[..., k] += evidence.smooth(drawn[..., k] * trust, 1.0)
+        weight += evidence.smooth(much * trust, 1.0)
     if across:
         vectors = -vectors
     fixed = np.zeros((rows, columns), bool)
@@ -64,7 +64,7 @@ def detect_directions(
         drawn, much = crossed(of_strokes(strokes), rows, columns)
         fixed = much > 0
         # Beside the user's strokes the photo does not count: it may say the contrary.
-        heard = 1 - np.minimum(_blurred(fixed.astype(np.float64), _BESIDE) / _PEAK, 1.0)
+        heard = 1 - np.minimum(evidence.smooth(fixed.astype(np.float64), _BESIDE) / _PEAK, 1.0)
         vectors, weight = vectors * heard[..., None], weight * heard
         vectors[fixed] = drawn[fixed] * (_STROKES / much[fixed])[:, None]
         weight[fixed] = _STROKES
@@ -82,8 +82,5 @@ def detect_directions(
 
 
 def _means(plane: Floats, rows: int, columns: int) -> Floats:
+    """A plane (h, w) or (h, w, k) reduced to rows × columns."""
     return shrunk(plane.astype(np.float32), columns, rows).astype(np.float64)
-
-
-def _blurred(plane: Floats, sigma: float) -> Floats:
-    return blurred(np.ascontiguousarray(plane, np.float32), sigma).astype(np.float64)

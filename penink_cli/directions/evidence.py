@@ -1,7 +1,7 @@
-"""What a photograph says of the form: tangents of its tones, each with a weight, before anything is smoothed.
+"""What a photograph says of the form: tangents of its tones, each with a weight, before the field is smoothed.
 
-Directions are double-angle vectors (cos 2θ, sin 2θ) here, so that opposite ways are the same and may be added up. The
-length of a sum is how far its parts agree.
+Directions are double-angle vectors (cos 2θ, sin 2θ), so that opposite directions are the same and may be added up. The
+length of a sum says how far its parts agree.
 """
 
 from __future__ import annotations
@@ -16,17 +16,17 @@ from penink_cli.directions._compiled import field as kernel
 from penink_cli.geometry import walls
 from penink_cli.ground.model import ColourImage, EdgeList, Floats, GreyImage
 
-LONG = 384  # pixels of the long side of the view that tangents are taken of
+LONG = 384  # pixels of the long side of the view in which tangents are measured
 _HUE = 0.7  # how much a step in colour counts beside one in lightness
-_FINE = 0.8  # σ with which gradients are taken, pixels of that view
+_FINE = 0.8  # σ, pixels of that view: the view is blurred by it before gradients are taken
 _GRAIN = 0.012  # a gradient, Lab lightness of 1 a pixel, that is hardly more than grain
-_AROUND = 6.0  # σ, pixels: each place's evidence is judged by what there is around
-_RIM = 0.012  # of the width that counts nothing on each side: scans have dark rims, which would rule everything
-_BESIDE = 2.5  # pixels on either side of a strong edge that the silhouette has made, not the form
-STRONG = 0.15  # grey step of an edge that parts one thing from another
-_OUTSIDE, _INSIDE = 0.05, 0.5  # weight beside an edge: in the open, and where edges are all around
-_REACH = 0.13  # of the long side: how far an edge may be that surrounds a place
-_STEEP = (0.9807852804032304, 0.19509032201612825), (0.8314696123025452, 0.5555702330196022)
+_AROUND = 6.0  # σ, pixels: the evidence of each place is weighed by how much there is around it
+_RIM = 0.012  # part of the width that does not count at each side: scans have dark rims, which would outweigh the rest
+_BESIDE = 2.5  # pixels on either side of a strong edge in which gradients are the silhouette's, not the form's
+STRONG = 0.15  # least grey step of an edge that parts one thing from another
+_OUTSIDE, _INSIDE = 0.05, 0.5  # weight beside such an edge: where no others are around, and where they are all around
+_REACH = 0.13  # part of the long side within which an edge is around a place
+_STEEP = (0.9807852804032304, 0.19509032201612825), (0.8314696123025452, 0.5555702330196022)  # of 11.25° and 33.75°
 _RAYS = np.array(  # 16 directions, half a step off the axes
     [(s * a, t * b) for c, d in _STEEP for a, b in ((c, d), (d, c)) for s in (1, -1) for t in (1, -1)]
 )
@@ -34,9 +34,10 @@ _RAYS = np.array(  # 16 directions, half a step off the axes
 
 @dataclass(frozen=True, eq=False)
 class Evidence:
-    """Directions a photograph shows: vectors (h, w, 2) no longer than their weight (h, w), and trust (h, w), 0 … 1.
+    """Directions that a photograph shows.
 
-    weight: how much there is of them beside the noise, 0 … 1. trust: 1 save beside silhouettes and at the frame.
+    vectors: (h, w, 2) double-angle vectors, none longer than its weight. weight: (h, w) how much evidence there is
+    beside the noise, 0 … 1. trust: (h, w) 1, but less beside silhouettes and 0 at the frame.
     """
 
     vectors: Floats
@@ -45,9 +46,9 @@ class Evidence:
 
 
 def tangents(photo: GreyImage | ColourImage, edges: EdgeList, noise: float) -> Evidence:
-    """The directions along which the photo's tones and colours change least, at LONG pixels or fewer.
+    """The directions along which the photo's tones and colours change least, in a view of at most LONG pixels.
 
-    noise: a mean gradient, of 1 a pixel, below which places count less and less.
+    noise: a mean gradient, of 1 a pixel; places with less count less and less.
     """
     h, w = photo.values.shape[:2]
     shrink = max(1.0, max(h, w) / LONG)
@@ -58,15 +59,15 @@ def tangents(photo: GreyImage | ColourImage, edges: EdgeList, noise: float) -> E
         vectors[..., 0] += dy * dy - dx * dx  # along the tones: −(dx + i dy)²
         vectors[..., 1] -= 2 * dx * dy
     square = np.sqrt(vectors[..., 0] * vectors[..., 0] + vectors[..., 1] * vectors[..., 1])
-    # Each place counts by its gradient and not by the square of it: strong edges would shout all others down.
+    # A place counts by its gradient and not by the square of it, by which strong edges would outweigh all others.
     trust = _trust(edges, rows, columns)
     loud = trust * np.sqrt(square) / (square + _GRAIN * _GRAIN)
-    around = _smooth(loud * square, _AROUND) / np.maximum(_smooth(trust, _AROUND), 0.15) + noise
+    around = smooth(loud * square, _AROUND) / np.maximum(smooth(trust, _AROUND), 0.15) + noise
     return Evidence(vectors * (loud / around)[..., None], loud * square / around, trust)
 
 
 def _planes(photo: GreyImage | ColourImage, width: int, height: int) -> list[Picture]:
-    """Lightness, and the two of colour where there is any, of Lab / 100."""
+    """Planes (height, width) of Lab / 100: lightness and, of a coloured photo, both of colour, which count by _HUE."""
     small = shrunk(photo.values, width, height, 1 / photo.maxval)
     if small.ndim == 2:
         small = np.dstack([small] * 3)
@@ -76,19 +77,21 @@ def _planes(photo: GreyImage | ColourImage, width: int, height: int) -> list[Pic
 
 
 def _gradient(plane: Picture) -> tuple[Floats, Floats]:
-    """Along x and y, a pixel, central; at the frame to the one neighbour there is."""
+    """Central differences along x and y, a pixel; at the frame half the difference to the one neighbour there is."""
     padded = np.pad(plane.astype(np.float64), 1, mode="edge")
     return (padded[1:-1, 2:] - padded[1:-1, :-2]) * 0.5, (padded[2:, 1:-1] - padded[:-2, 1:-1]) * 0.5
 
 
-def _smooth(values: Floats, sigma: float) -> Floats:
+def smooth(values: Floats, sigma: float) -> Floats:
+    """Values (h, w) low-passed by a Gaussian of sigma pixels."""
     return blurred(np.ascontiguousarray(values, np.float32), sigma).astype(np.float64)
 
 
 def _trust(edges: EdgeList, rows: int, columns: int) -> Floats:
-    """Little beside a silhouette in the open, which tells of the thing's border; more where a thing is all around.
+    """How far gradients (rows, columns) tell of the form: little beside a silhouette, where they are of the border.
 
-    So an object keeps its roundness, while the sky is not dragged round a head and a coin is no onion.
+    They count more where strong edges are all around, as they are within a small thing. So a thing keeps its roundness,
+    and neither the sky around a head nor the inside of a coin is filled with rings along the silhouette.
     """
     trust = np.ones((rows, columns))
     strong = _strong(edges)
@@ -105,7 +108,7 @@ def _trust(edges: EdgeList, rows: int, columns: int) -> Floats:
 
 
 def _strong(edges: EdgeList) -> EdgeList:
-    """The edges that part one thing from another; all where no strength is known."""
+    """The edges that part one thing from another; all edges where no strength is known."""
     if edges.strength is None:
         return edges
     return EdgeList(edges.width, edges.height, edges.vertices, edges.edges[edges.strength >= STRONG])
@@ -120,6 +123,9 @@ def _surrounded(strong: EdgeList, h: int, w: int) -> Floats:
 
 
 def links(edges: EdgeList, rows: int, columns: int) -> tuple[Floats, Floats]:
-    """Whether strong edges cut the link of each sample to the next in its row, and to that of the next row: 0 or 1."""
+    """Whether strong edges cut the links of each sample (rows, columns): to the next in its row; to the row below.
+
+    1 where a link is cut, else 0.
+    """
     met = walls.walls(_strong(edges), columns, rows)
     return (met & walls.RIGHT != 0).astype(np.float64), (met & walls.DOWN != 0).astype(np.float64)

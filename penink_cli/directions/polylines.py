@@ -8,8 +8,8 @@ import numpy as np
 
 from penink_cli.ground.model import Floats, Ints, Lines, Strokes
 
-_PER_CELL = 3.0  # pieces that a line is taken in, of a cell's length
-_PIECES = 8  # of a Bézier segment
+_PER_CELL = 3.0  # pieces of a line to a cell's length
+_PIECES = 8  # straight pieces of a Bézier segment
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,14 +25,13 @@ class WeightedLines:
 
 
 def crossed(lines: WeightedLines, rows: int, columns: int) -> tuple[Floats, Floats]:
-    """Double-angle vectors (rows, columns, 2) along the lines, summed by cell, and the sum of their lengths (rows,
-    columns).
+    """Sums by cell of double-angle vectors (rows, columns, 2) along the lines, and of their lengths (rows, columns).
 
-    Each piece counts by its length in cells times its weight. What lies outside the frame counts nowhere.
+    Each piece of a line counts by its length in cells times its weight. What lies outside the frame does not count.
     """
     points = lines.points * (columns, rows)
     within = np.ones(max(0, len(points) - 1), np.bool_)
-    within[lines.first[1:-1] - 1] = False  # from the end of one to the beginning of the next
+    within[lines.first[1:-1] - 1] = False  # from the end of a line to the beginning of the next
     start = np.flatnonzero(within)
     a, step = points[start], points[start + 1] - points[start]
     length = np.sqrt(step[:, 0] * step[:, 0] + step[:, 1] * step[:, 1])
@@ -56,7 +55,7 @@ def crossed(lines: WeightedLines, rows: int, columns: int) -> tuple[Floats, Floa
 
 
 def of_strokes(strokes: Strokes) -> WeightedLines:
-    """Strokes on a sheet of any size that stands for the photo, each segment in _PIECES pieces. Dots say nothing."""
+    """Strokes on a sheet of any size that stands for the photo, each point with weight 1. Dots tell no direction."""
     begin = strokes.first[:-1]
     segments = (np.diff(strokes.first) - 1) // 3
     of = np.repeat(np.arange(len(segments)), segments)
@@ -73,5 +72,5 @@ def of_strokes(strokes: Strokes) -> WeightedLines:
 
 
 def of_lines(lines: Lines) -> WeightedLines:
-    """Telling lines: each counts by how much the pen is pressed."""
+    """Telling lines, each point with the weight with which the pen is pressed."""
     return WeightedLines(lines.points / (lines.width, lines.height), lines.first, lines.weight)

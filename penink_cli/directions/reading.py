@@ -1,7 +1,7 @@
-"""Reading a direction field at the size at hand, by the same reconstruction as the grey is enlarged by.
+"""Reading a direction field at any size, by the same reconstruction that enlarges the grey.
 
-The field is one function over the image frame, sharp across discontinuity edges, and reading it is taking its values
-at the output's centres: a small drawing and a poster find the same direction at the same place.
+The field is one function over the image frame, sharp across discontinuity edges. To read it is to take its values at
+the output's centres, so a small drawing and a poster find the same direction at the same place.
 """
 
 from __future__ import annotations
@@ -25,17 +25,19 @@ def at_size(
 ) -> Directions:
     """The field at the centres of rows × columns pixels that fill the frame: unit vectors, float32.
 
-    Where neighbours disagree so much that their mean is a short vector, the confidence is as much less; where
-    nothing is left of it, the direction is that of x and the confidence 0.
+    Where neighbours disagree, their mean is a short vector, and the confidence is as much less. Where the mean is
+    nothing, the direction is that of x and the confidence 0.
 
     edges: the arrangement of the picture, across which nothing is mixed; None for none.
     window: x, y, width, height of the pixels wanted, all unless given. No value depends on it, nor on threads.
-    confident: whether the confidence is wanted too; without it neighbours alone tell it.
+    confident: whether the field's own confidence counts too; else the confidence is how far neighbours agree.
+
+    Raises ParameterError for a window beyond the frame.
     """
     x, y, width, height = check_window(window, columns, rows)
     h, w = directions.cos2.shape
-    # Below the field's own grid the reconstruction would widen its kernels, and turn the field with the size: read at
-    # an odd multiple of the size instead, one pixel of which lies at each of the centres wanted.
+    # For fewer pixels than samples the reconstruction would widen its kernels, and directions would depend on the size.
+    # So the field is read at an odd multiple of the size, where a pixel lies at each of the centres wanted.
     down, across = _odd(h, rows), _odd(w, columns)
     finer = x * across, y * down, width * across, height * down
 
@@ -58,5 +60,5 @@ def at_size(
 
 
 def _odd(samples: int, pixels: int) -> int:
-    """The least odd number of which so many pixels are no fewer than the samples."""
+    """The least odd number that makes so many pixels, times it, no fewer than the samples."""
     return -(-samples // pixels) // 2 * 2 + 1

@@ -1,12 +1,12 @@
-"""The smooth field that evidence leaves: a screened Poisson equation, its links cut at edges, its knots calmed.
+"""The smooth field that follows the evidence: a screened Poisson equation on a grid whose links edges cut.
 
 (λ L + κ w + p) x = d + p f. L is the Laplacian of the grid, whose links are cut where strong edges pass. w is the
-weight of the evidence, d its vectors, f the hatch's own direction, of which there is a little, p, everywhere. Nothing
-is smoothed before this: it would leak across edges.
+weight of the evidence, d its vectors, f the hatch's own direction, which everywhere has the small weight p. Evidence is
+not smoothed before: that would leak across edges.
 
-A line field cannot avoid singularities, places around which it makes half a turn, but it need not have more of them
-than the picture has: the evidence around each is weakened and the equation solved again. Knots and whorls are what
-the eye objects to most.
+A line field cannot avoid singularities, places around which it makes half a turn. But it need not have more of them
+than the picture has: the evidence around each is weakened, and the equation solved again. Knots and whorls of lines are
+what the eye objects to most.
 """
 
 from __future__ import annotations
@@ -19,13 +19,13 @@ from penink_cli.directions._compiled import field as kernel
 from penink_cli.ground.model import Floats
 
 SMOOTH = 5.0  # λ
-_KEEP = 0.3  # κ: evidence pulls with its weight, and is held by a third of it
-_CUT = 1e-4  # of a link, where an edge cuts it
-_CALMED = 8  # times that evidence is weakened at the most
-_AROUND = 2.2  # σ, samples, of what is weakened around a singularity
-_WEAKEN = 0.6
-_PEAK = 0.0329  # of a Gaussian of that σ
-_CLOSE = 1e-5  # relative: a thousandth of a degree
+_KEEP = 0.3  # κ: evidence pulls with its whole weight, and is held by a third of it
+_CUT = 1e-4  # part of a link's weight that is left where an edge cuts it
+_CALMED = 8  # how often evidence is weakened at the most
+_AROUND = 2.2  # σ, samples: within it evidence around a singularity is weakened
+_WEAKEN = 0.6  # part of the evidence that is taken away at a singularity
+_PEAK = 0.0329  # the greatest value of a Gaussian of that σ
+_CLOSE = 1e-5  # relative error of the solution: a thousandth of a degree
 _MOST = 2000  # rounds of the solver; some 100 are usual
 
 
@@ -37,8 +37,7 @@ def solved(
     own: tuple[float, float],
     pull: float,
 ) -> tuple[Floats, Floats]:
-    """The field x (h, w, 2), of any length, and the part of it, 0 … 1, that evidence and not the hatch's own angle
-    says.
+    """The field x (h, w, 2), vectors of any length, and the part (h, w), 0 … 1, of each that comes from evidence.
 
     vectors, weight: evidence, (h, w, 2) and (h, w). fixed: (h, w) evidence that is never weakened.
     cut: as of `evidence.links`. own: the hatch's own direction, a double-angle unit vector. pull: p, above 0.
@@ -46,7 +45,7 @@ def solved(
     right, down = (SMOOTH * np.maximum(1 - plane, _CUT) for plane in cut)
     h, w = weight.shape
     keep = np.ones((h, w))
-    planes = np.zeros((h, w, 3))  # x without the hatch's own angle, and how much of that there is
+    planes = np.zeros((h, w, 3))  # x without the hatch's own direction, and the factor of that
     room = np.empty((4, h, w, 3))
     for calmed in range(_CALMED + 1):
         target = np.dstack([vectors * keep[..., None], np.full((h, w), pull)])
@@ -62,9 +61,9 @@ def solved(
 
 
 def singular(x: Floats, cut: tuple[Floats, Floats]) -> npt.NDArray[np.bool_]:
-    """Samples (h, w) that are the upper left of four around which x (h, w, 2) turns once, the line field half.
+    """Which samples (h, w) are the upper left of four around which x (h, w, 2) makes a turn, the line field half one.
 
-    Not where edges part the four.
+    Four samples that edges part are left out. cut: as of `evidence.links`.
     """
     around = (x[:-1, :-1], x[:-1, 1:], x[1:, 1:], x[1:, :-1])
     turns = np.zeros((x.shape[0] - 1, x.shape[1] - 1), np.int64)

@@ -1,4 +1,4 @@
-"""An illustration drawn: its layers, together on one sheet.
+"""Illustrations drawn: their layers, together on one sheet.
 
 layering.layer_strokes    layers of one colour share the sheet, their tones adding up
   drawing                   one layer: its grey at the size it is blasted at, its lines, its outlines

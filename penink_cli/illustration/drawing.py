@@ -11,7 +11,7 @@ import numpy as np
 from penink_cli.ground.device import narrowed
 from penink_cli.ground.model import EdgeList, Floats, GreyImage, LineChoice, Lines, OutlineChoice, Strokes
 
-PIXELS_PER_PT = 2.0  # of the grey that is blasted: half the distance between the closest strokes
+PIXELS_PER_PT = 2.0  # of the grey that is blasted: a pixel is half the distance between the closest strokes
 
 Advance = Callable[[int], None]
 
@@ -34,9 +34,10 @@ def tone_curve(image: GreyImage, gamma: float) -> Floats:
 def enlarged(
     samples: GreyImage, edges: EdgeList | None, size: tuple[int, int], threads: int | None
 ) -> GreyImage:
-    """Samples at the size that they are blasted at: half by the reconstruction, doubled by the separable filter.
+    """Samples at the size, width and height in pixels, at which they are blasted.
 
-    Few grey levels show no stairs.
+    Half of the size is reconstructed, and doubled by the separable filter. Samples of few grey levels are eased first,
+    so that these show no steps.
     """
     from penink_cli.reconstruction.easing import eased
     from penink_cli.reconstruction.enlarge import bands
@@ -49,14 +50,14 @@ def outlined(
     edges: EdgeList, width_pt: float, height_pt: float, choice: OutlineChoice, ink: Strokes | None = None,
     device_dpi: float | None = None,
 ) -> Strokes:  # fmt: skip
-    """Outline strokes, as a strokes file holds them."""
+    """The strokes of `outline_strokes`, rounded as a strokes file holds them."""
     return outline_strokes(edges, width_pt, height_pt, choice, ink, device_dpi).rounded()
 
 
 def lined(
     lines: Lines, width_pt: float, height_pt: float, choice: LineChoice, device_dpi: float | None = None
 ) -> Strokes:
-    """Strokes of the telling lines that there is room for, as a strokes file holds them."""
+    """Strokes of the telling lines that there is room for, rounded as a strokes file holds them."""
     from penink_cli.lines.strokes import line_strokes
 
     return line_strokes(lines, width_pt, height_pt, choice, device_dpi=device_dpi).rounded()
@@ -66,9 +67,12 @@ def outline_strokes(
     edges: EdgeList, width_pt: float, height_pt: float, choice: OutlineChoice, ink: Strokes | None = None,
     device_dpi: float | None = None,
 ) -> Strokes:  # fmt: skip
-    """Outline strokes of the edges chosen, for that printer; ink is on the sheet already, and not to be doubled.
+    """Outline strokes of the edges chosen.
 
-    They are so much finer as the printer paints them broader, unless a technical pen draws them.
+    ink: strokes that are on the sheet already; outlines along them are left out. device_dpi: of the printer, None for
+    none. The strokes are as much finer as the printer paints them broader, unless a technical pen draws them.
+
+    Raises ArrangementError for a region's point outside the frame.
     """
     from penink_cli.blasting import outlines
 

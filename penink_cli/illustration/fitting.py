@@ -1,8 +1,8 @@
 """An illustration in fewer bytes: coarser grids, fewer edges, lines and directions, all by one measure.
 
-The measure is the error that a drawing may show at the size it is to be seen at, by default the natural one. A chain
-of edges has to save so much more a bit as the square of that grows, lines and directions become fewer as it does; it is
-bisected.
+The measure is the error that a drawing may show at the size at which it is to be seen, by default the natural size.
+What a chain of edges must save a bit grows with the square of the error; lines and directions become fewer as it grows.
+The error that just fits the bytes is found by bisection.
 """
 
 from __future__ import annotations
@@ -17,23 +17,24 @@ from penink_cli.formats import archive, illustration
 from penink_cli.ground.errors import LimitError
 from penink_cli.ground.model import Directions, EdgeList, GreyImage, Illustration, Layer
 
-#: Pixels to a sample of the picture that coarser grids are compared with.
+#: Pixels a sample, along each axis, of the picture that coarser grids are compared with.
 FINE = 3
-#: Grey levels of 255: the error of an archive that is not limited, the least and the most that are tried.
+#: Errors in grey levels of 255: that of an archive whose bytes are not limited, the least and the most that are tried.
 USUAL, LEAST, MOST = 4.5, 1.0, 96.0
-_TRIES = 7
-_LEAST_FIELD = 12
+_TRIES = 7  # of the bisection
+_LEAST_FIELD = 12  # samples that the shorter side of a field keeps
 
 
 def packed_within(
     whole: Illustration, most: int | None, settle: Callable[[Illustration], Illustration], threads: int | None = None,
     seen_at: float | None = None,
 ) -> bytes:  # fmt: skip
-    """The archive of an illustration, at the finest that keeps it within `most` bytes.
+    """The archive of an illustration, as fine as `most` bytes allow; None for no limit.
 
-    settle: brings an illustration to the precision it is kept at. seen_at: width in points of the largest drawing to
-    be made of it; what that would not show is left out, whatever the bytes. Raises LimitError, which says the least
-    possible.
+    settle: brings an illustration to the precision at which archives keep it. seen_at: width in points of the largest
+    drawing to be made of it; what that would not show is left out, whatever the bytes.
+
+    Raises LimitError where no archive is so small; the error says how small the smallest is.
     """
     width = seen_at or whole.width
     best = archive.pack(illustration.members(whole))
@@ -67,6 +68,7 @@ def packed_within(
 
 
 def _picture(layer: Layer, threads: int | None) -> GreyImage:
+    """The picture that a layer's samples and edges stand for, FINE pixels a sample."""
     from penink_cli.reconstruction.enlarge import bands
 
     h, w = layer.samples.values.shape
@@ -77,7 +79,10 @@ def _picture(layer: Layer, threads: int | None) -> GreyImage:
 def _coarser(
     layer: Layer, picture: GreyImage, limit: float, width_pt: float, height_pt: float, threads: int | None
 ) -> Layer:
-    """The layer with no more than a drawing of that size needs to show errors within the limit, levels of 255."""
+    """The layer with no more than a drawing of that size needs for errors within the limit, in levels of 255.
+
+    picture: as of `_picture`.
+    """
     from penink_cli.blasting import telling
     from penink_cli.reconstruction import extraction, grid, thinning
 
@@ -95,7 +100,7 @@ def _coarser(
     clean = extraction.extract_samples(picture.grey, edges)
     reduced = grid.choose_grid(clean, edges, limit / 255, seen_at=width_pt, photo=picture.grey, threads=threads).samples
     h, w = layer.samples.values.shape
-    samples = layer.samples  # which a grid as fine would only blur
+    samples = layer.samples  # kept where the grid found is about as fine: to go over to it would only blur
     if reduced.size < 0.95 * h * w:
         samples = GreyImage.from_grey(reduced, layer.levels - 1)
     lines, field = layer.lines, layer.directions
@@ -111,7 +116,7 @@ def _coarser(
 
 
 def _fewer(field: Directions, part: float) -> Directions:
-    """The field on a grid of that part of its samples along each side."""
+    """The field on a coarser grid: that part, 0 … 1, of its samples along each side."""
     from penink_cli.reconstruction.shrinking import shrunk
 
     part = min(1.0, max(part, _LEAST_FIELD / min(field.cos2.shape)))

@@ -13,14 +13,15 @@ from penink_cli.ground import pens
 from penink_cli.ground.model import Floats, GreyImage, Illustration, Layer, Strokes
 from penink_cli.illustration.drawing import Advance, enlarged, grey_size, lined, outlined, tone_curve
 
-LEAST_TONE = 1 / 255  # below it an overlay is paper
-#: Layers that share a sheet are hatched anew with what was left over: this often in all at the most, and no more once
-#: the rest is no greater than what blasting one layer leaves (RMS of tone as the eye sees it).
+LEAST_TONE = 1 / 255  # of an overlay: less is paper
+#: Layers that share a sheet are hatched at most ROUNDS times, each time with the error of the time before added to the
+#: tone wanted. It is enough once the error (RMS of tone as the eye sees it) is GOOD, as small as that of a single
+#: layer.
 ROUNDS, GOOD = 3, 0.006
 
 
 def steps(illustration: Illustration, chosen: Sequence[int] | None = None) -> int:
-    """How often `layer_strokes` advances by 1."""
+    """By how much `layer_strokes` advances in all."""
     wanted = set(range(len(illustration.layers)) if chosen is None else chosen)
     groups = [group for group in of_one_colour(illustration) if wanted & set(group)]
     apart = (replace(illustration, layers=tuple(illustration.layers[i] for i in group)) for group in groups)
@@ -28,7 +29,7 @@ def steps(illustration: Illustration, chosen: Sequence[int] | None = None) -> in
 
 
 def _steps(illustration: Illustration) -> int:
-    """How often layers of one colour advance by 1."""
+    """By how much layers of one colour advance in all."""
     return len(illustration.layers) * (ROUNDS if _together(illustration) else 1)
 
 
@@ -45,15 +46,16 @@ def layer_strokes(
 ) -> list[tuple[Strokes, Strokes]]:
     """Hatching and outline strokes of each layer, bottom first, for a picture width_pt wide.
 
-    Outlines and telling lines are ink first, those of all layers; then each layer is hatched up to the sum of its tone
-    and of the layers below, with their ink counted, wherever it has tone itself: so tones add up and no ink is there
-    twice. What is left over along the layers' common borders, where neither is free to add ink, is fed back to all of
-    them. A layer with the threshold rule is hatched as an illustration that draws itself is on a device, whatever the
-    others are. Layers of one colour share the sheet so; inks of other colours are transparent, and each is drawn as if
-    it had the sheet to itself.
+    Layers of one colour share the sheet. The outlines and telling lines of all are ink first. Then each layer is
+    hatched wherever it has tone itself, up to the sum of its tone and the tones below, with all ink so far counted: so
+    tones add up, and no ink is there twice. The error along common borders of layers, where neither is free to add ink,
+    is fed back to all of them. A layer with the threshold rule is hatched as a device hatches an illustration that
+    draws itself, whatever the other layers are. Inks of other colours are transparent, and each is drawn as if it had
+    the sheet to itself.
 
-    pen_pt: one pen for all strokes; without it small prints have finer ones (`ground.pens`).
-    chosen: numbers of the layers that are wanted; those of other colours are not drawn. The result has these alone.
+    device_dpi: the printer's, None for none. seed: added to the layers' own. pen_pt: one pen for all strokes; without
+    it small prints have finer pens (`ground.pens`). chosen: numbers of the layers wanted, None for all; the result has
+    these alone, and layers of colours that none of them has are not drawn. advance: is told of progress, see `steps`.
     """
     wanted = range(len(illustration.layers)) if chosen is None else chosen
     drawn: dict[int, tuple[Strokes, Strokes]] = {}
@@ -72,7 +74,7 @@ def layer_strokes(
 
 
 def of_one_colour(illustration: Illustration) -> list[list[int]]:
-    """Numbers of the layers of each colour, by the first of each."""
+    """The numbers of the layers of each colour; colours are in the order of their first layers."""
     groups: dict[str, list[int]] = {}
     for i, layer in enumerate(illustration.layers):
         groups.setdefault((layer.color or "#000000").lower(), []).append(i)
@@ -113,7 +115,7 @@ def _on_one_sheet(
         from penink_cli.blasting.blast import left_over
 
         error = left_over(total, width_pt, height_pt, Strokes.joined([*outlines, *hatched]), device_dpi, threads)
-        # summed as whole numbers: the order of the sum is not the same on every machine
+        # summed as whole numbers, whose sum does not depend on the order, which machines choose differently
         squares = int((np.rint(error * 4096).astype(np.int64) ** 2).sum())
         if best is None or squares < best[0]:
             best = squares, hatched
@@ -126,9 +128,9 @@ def _on_one_sheet(
 
 
 def _with_pens(layer: Layer, width_pt: float, device_dpi: float | None, pen_pt: float | None) -> Layer:
-    """The layer with the one pen there is, or with pens that suit the size.
+    """The layer with one pen for all strokes, pen_pt, or else with pens that suit the size.
 
-    The texture of one that is hatched as by a device stays: such a one is magnified as its pen is.
+    The texture of a layer with the threshold rule stays: the rule magnifies it as its pen.
     """
     outline = layer.outline
     if pen_pt is not None:
@@ -150,7 +152,7 @@ def _with_pens(layer: Layer, width_pt: float, device_dpi: float | None, pen_pt: 
 
 
 def _together(illustration: Illustration) -> bool:
-    """Whether layers share the sheet that can make up for one another."""
+    """Whether several layers share the sheet that can correct one another's errors."""
     return sum(layer.rule == "best" for layer in illustration.layers) > 1
 
 
@@ -158,7 +160,10 @@ def _hatched(
     illustration: Illustration, width_pt: float, height_pt: float, greys: list[GreyImage], extra: Floats | None,
     outlines: list[Strokes], device_dpi: float | None, seed: int, threads: int | None, advance: Advance,
 ) -> tuple[list[Strokes], Floats]:  # fmt: skip
-    """The hatching of each layer, and the tone (h, w) of them all; extra: (h, w) what is wanted besides."""
+    """The hatching of each layer, and the tone (h, w) of all together.
+
+    greys: of each layer, (h, w). extra: (h, w) tone that is wanted besides, None for none. outlines: of each layer.
+    """
     from penink_cli.blasting.blast import blast
 
     ink = Strokes.joined(outlines)
@@ -195,7 +200,7 @@ def _hatched_as_by_a_device(
     illustration: Illustration, width_pt: float, height_pt: float, device_dpi: float | None, outlines: list[Strokes],
     threads: int | None,
 ) -> dict[int, Strokes]:  # fmt: skip
-    """Hatching of the layers with the threshold rule, from samples and edges as a device is sent them, on its grids."""
+    """Hatching of the layers with the threshold rule, by their numbers: as a device draws it, from what it is sent."""
     numbers = [i for i, layer in enumerate(illustration.layers) if layer.rule == "threshold"]
     if not numbers:
         return {}

@@ -11,7 +11,7 @@ from penink_cli.ground.model import EdgeList, Floats, GreyImage
 
 
 def by_mask(photo: GreyImage, mask: GreyImage) -> Floats:
-    """The layer's share (h, w), 0 … 1, of each pixel: the mask's grey.
+    """The layer's share (h, w), 0 … 1, of each pixel of the photo: the mask's grey.
 
     Raises ParameterError where the two differ in size.
     """
@@ -22,20 +22,23 @@ def by_mask(photo: GreyImage, mask: GreyImage) -> Floats:
 
 
 def by_grey(photo: GreyImage, low: float, high: float) -> Floats:
-    """1 where the grey is from low up to, but not including, high, else 0. White is in the range that ends at 1."""
+    """Share (h, w): 1 where the grey, 0 … 1, is at least low and less than high, else 0; a high of 1 is included."""
     grey = photo.values / float(photo.maxval)
     return ((grey >= low) & ((grey < high) | (high == 1))).astype(np.float64)
 
 
 def by_region(photo: GreyImage, edges: EdgeList, points: Sequence[tuple[float, float]]) -> Floats:
-    """1 where a pixel's centre lies in the regions of the arrangement that hold the points, else 0."""
+    """Share (h, w): 1 where a pixel's centre lies in the regions of the arrangement that hold the points, else 0.
+
+    points: x, y in the edge list's pixels, at least one. Raises ArrangementError for a point outside the frame.
+    """
     from penink_cli.geometry import regions
 
     return regions.region_mask(edges, np.array(points), *photo.values.shape[::-1]).astype(np.float64)
 
 
 def overlay(photo: GreyImage, share: Floats, invert: bool = False) -> GreyImage:
-    """The photo's tone times the share, on white; inverted, exactly what is missing from that."""
+    """The photo's tone times the share (h, w), on white; inverted, exactly the rest of the photo's tone."""
     ink = photo.maxval - photo.values.astype(np.int64)
     part = np.floor(ink * share + 0.5).astype(np.int64)
     values = photo.maxval - (ink - part if invert else part)

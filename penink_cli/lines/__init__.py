@@ -2,8 +2,8 @@
 
 detection.detect_lines
   oriented.responses   a bank of filters in 24 directions, fine and coarse
-  tracing.traces       lines followed, each on its own direction's layer
+  tracing.traces       lines followed, each on the layers of its own direction
   spots                small round dark things
-choice                 which there is room for at a size
-strokes                those as swelling strokes
+choice                 the lines that there is room for at a size
+strokes                lines as swelling strokes
 """

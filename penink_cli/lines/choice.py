@@ -1,4 +1,4 @@
-"""Which telling lines there is room for at one size on paper: the most telling first, under a local quota."""
+"""The telling lines that there is room for at one size on paper: the most telling first, under a local quota."""
 
 from __future__ import annotations
 
@@ -9,7 +9,8 @@ import numpy as np
 from penink_cli.geometry.curves import lengths
 from penink_cli.ground.model import Floats, Ints, LineChoice, Lines
 
-#: The cells of the map that says how full each place is, and the σ of the Gaussian it is blurred by, points.
+#: Points: the side of the cells of a map that says how full each place is, and the σ of the Gaussian that blurs the
+#: map.
 CELL_PT, ROOM_PT = 3.0, 10.0
 #: A line of rank r may make a place as full as the choice's density times LEAST_PART + r / USUAL_RANK, at most MOST.
 USUAL_RANK, LEAST_PART, MOST = 6.0, 0.7, 1.6
@@ -22,17 +23,20 @@ SHORTEST_PT, FINEST_SPOT_PT, BROADEST_SPOT_PT = 3.0, 0.25, 5.0
 
 
 def least_rank(width_pt: float, height_pt: float) -> float:
-    """The rank from which on lines are drawn at that size, unless the choice says another."""
+    """The least rank of lines that are drawn at that size, unless the choice says another."""
     rank = LEAST_RANK * math.sqrt(SIZE_PT / math.sqrt(width_pt * height_pt))
     return min(max(rank, RANKS[0]), RANKS[1])
 
 
 def chosen(lines: Lines, width_pt: float, height_pt: float, choice: LineChoice, white: bool = False) -> Ints:
-    """Indices of the lines that there is room for, by falling rank; spots take none."""
+    """Indices of the lines that there is room for, by falling rank; spots take no room.
+
+    white: light lines are chosen, else dark ones.
+    """
     least = least_rank(width_pt, height_pt) if choice.min_rank is None else choice.min_rank
     scale = np.array([width_pt / lines.width, height_pt / lines.height])
     order = np.argsort(-lines.rank, kind="stable")
-    # A stamp has room for few lines, and still needs its eyes.
+    # A stamp has room for few lines, but a face on it still needs its eyes.
     needed = np.where(lines.breadth > 0, min(least, LEAST_RANK), least)
     order = order[(lines.rank[order] >= needed[order]) & (lines.white[order] == white)]
     room = _Room(width_pt, height_pt)
@@ -56,7 +60,7 @@ def chosen(lines: Lines, width_pt: float, height_pt: float, choice: LineChoice, 
 
 
 class _Room:
-    """How much line lies around each place of a sheet: points in a square point, over a Gaussian."""
+    """How much line lies around each place of a sheet: points of line in a square point, averaged over a Gaussian."""
 
     def __init__(self, width_pt: float, height_pt: float):
         sigma = ROOM_PT / CELL_PT
@@ -67,9 +71,12 @@ class _Room:
         self.map = np.zeros((math.ceil(height_pt / CELL_PT) + 1 + 2 * r, math.ceil(width_pt / CELL_PT) + 1 + 2 * r))
 
     def take(self, points: Floats, steps: Floats, limit: float) -> bool:
-        """Whether there is room for a line (k, 2); it is then taken."""
+        """Take the room for a line, if there is any; whether there was.
+
+        points: (k, 2). steps: (k - 1,) lengths between them. limit: how full a place may be before.
+        """
         middle = (points[1:] + points[:-1]) / 2
-        # steps longer than a cell in parts, shorter ones together
+        # steps longer than a cell are cut into parts; those that lie in one cell are added up below
         n = np.maximum(np.ceil(steps / CELL_PT), 1).astype(np.int64)
         part = np.repeat(np.arange(len(n)), n)
         along = (np.arange(len(part)) - np.repeat(np.cumsum(n) - n, n) + 0.5) / n[part] - 0.5

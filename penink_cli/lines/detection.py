@@ -1,12 +1,13 @@
 """From a photograph to its telling lines.
 
 1. The photo is reduced, or enlarged a little, to a working size: what a drawing of about 6 inches can show.
-2. Its local contrast is evened out, and a bank of oriented filters answers to pieces of dark and of light lines, at a
-   fine scale and at a coarse one. What answers in every direction is no line, what is as strong all around is texture.
-3. Lines are followed from the strongest answers, fine ones first; coarse ones stay where no fine one is near.
-4. Each gets a rank: long, clear, even, alone, and along the field of directions, or on light ground. Faint short ones
-   that run across the form are the worms that spoil faces and skies.
-5. Small dark things that are no lines (pupils) are spots, and what was traced in them is left away.
+2. Its local contrast is evened out, and a bank of oriented filters responds to pieces of dark and of light lines, at a
+   fine scale and at a coarse one. A place that responds in every direction is no line; what is as strong all around is
+   texture.
+3. Lines are followed from the strongest responses on. Coarse lines stay where no fine line is near. 4. Each line gets a
+rank. It is high for lines that are long, clear, even, alone, and along the field of directions or on
+   light ground. Faint short lines that run across the form would spoil faces and skies.
+5. Small dark things that are no lines, such as pupils, are spots. Lines that were traced in them are left out.
 """
 
 from __future__ import annotations
@@ -36,7 +37,7 @@ LOCAL, EVEN, FLOOR, GAINS = 24.0, 0.10, 0.035, (0.4, 1.8)
 GRAIN = 5.0
 #: σ across and along, pixels, of the fine bank, and of the coarse one on a view of half the size.
 FINE, COARSE = (0.75, 2.0), (1.0, 3.5)
-#: The response at which a dark line begins, at which it ends, and that of a line which the broadest pen draws.
+#: Responses: a dark line begins at HIGH and ends at LOW; FULL is that of a line which the broadest pen draws.
 HIGH, LOW, FULL = 0.005, 0.00175, 0.022
 #: The response at which a light line begins.
 WHITE_HIGH = 0.006
@@ -59,16 +60,16 @@ BESIDE_SPOT = (1.5, 6.0)
 #: A coarse line stays where at least FAR of it is further than NEAR pixels from all fine lines of a rank above
 #: FAR_RANK.
 FAR, NEAR, FAR_RANK = 0.7, 5.0, 0.45
-#: σ, pixels, of the field that lines are compared with where none is given, and of the tone around them.
+#: σ, pixels, over which the field of directions is pooled where none is given, and over which the ground's tone is.
 FIELD, GROUND = 8.0, 4.0
-#: A line that is within so many pixels of the frame all along is a scan's rim.
+#: A line whose points all lie within so many pixels of the frame is a scan's rim.
 RIM = 5.0
-#: On white a line is finer by FADED, from the tone LIGHT_GROUND on by less: no hatching is there that could be taken
-#: back for it, and on skin it would be a scar.
+#: On white ground a line is finer by the part FADED; the darker the ground, the less; from the tone LIGHT_GROUND on not
+#: at all. On light ground there is no hatching to make room for it, and a full line on skin would look like a scar.
 FADED, LIGHT_GROUND = 0.8, 0.8
 #: The least rank of a line, and its least length, pixels.
 LEAST_RANK, SHORTEST = 0.5, 5.0
-#: Every so many steps, about a pixel each, a point is kept: a smooth curve through these strays by a fifth of a pixel.
+#: Every so many steps, of about a pixel, a point is kept: a smooth curve through these strays by a fifth of a pixel.
 STEP = 6.0
 
 
@@ -83,8 +84,8 @@ def detect_lines(
 ) -> Lines:
     """Telling lines of a photo, those of the highest rank first.
 
-    grey: (h, w) 0 black … 1 white. black, white: which lines are looked for. min_length: pixels of the photo.
-    directions: the field at a size of rows × columns, in place of the photo's own.
+    grey: (h, w) 0 black … 1 white. black, white: whether dark and light lines are looked for. min_length: pixels of the
+    photo. directions: called with rows and columns, gives a field of that size that stands in for the photo's own.
     """
     rows, columns = grey.shape
     width, height = working_size(columns, rows)
@@ -125,7 +126,7 @@ def detect_lines(
 
 @dataclass(frozen=True)
 class _Line:
-    """A line in working pixels (centres at whole numbers): points (k, 3) x, y, response; see Lines for the rest."""
+    """A line in working pixels, centres at whole numbers: points (k, 3) x, y, response; for the rest see Lines."""
 
     points: Floats
     rank: float
@@ -137,13 +138,13 @@ class _Line:
 
 
 def working_size(width: int, height: int) -> tuple[int, int]:
-    """Width and height that lines are looked for at."""
+    """Width and height of the picture in which lines of a photo of that size are looked for."""
     scale = min(SIDE / math.sqrt(width * height), MOST_ENLARGED)
     return min(max(12, round(width * scale)), LONGEST), min(max(12, round(height * scale)), LONGEST)
 
 
 def resized(grey: Picture, width: int, height: int, threads: int) -> Picture:
-    """The picture (h, w) with that many pixels."""
+    """The picture (h, w) at width × height pixels."""
     h, w = grey.shape
     if width <= w and height <= h:
         return shrunk(grey, width, height, threads=threads)
@@ -168,16 +169,16 @@ def _grain(picture: Picture, threads: int) -> float:
     """The deviation of the noise in the picture's quiet parts."""
     fine = np.abs(picture - blurred(picture, 1.0, threads)).ravel()
     k = len(fine) // 5
-    return float(np.partition(fine, k)[k]) / 0.2533  # the fifth of a normal distribution's sizes that are least
+    return float(np.partition(fine, k)[k]) / 0.2533  # a fifth of normal deviates are smaller than .2533 deviations
 
 
 def field(picture: Picture, threads: int) -> tuple[Picture, Picture]:
-    """cos 2θ and sin 2θ of the direction along which the picture changes least, pooled widely."""
+    """cos 2θ and sin 2θ (h, w) of the direction along which the picture changes least, pooled over FIELD."""
     soft = blurred(picture, 1.5, threads)
     gx, gy = np.zeros_like(soft), np.zeros_like(soft)
     gx[:, 1:-1] = soft[:, 2:] - soft[:, :-2]
     gy[1:-1] = soft[2:] - soft[:-2]
-    size = np.sqrt(gx * gx + gy * gy) + np.float32(1e-4)  # each place has one voice for each step of grey
+    size = np.sqrt(gx * gx + gy * gy) + np.float32(1e-4)  # a place counts by its gradient, not by the square of it
     square, product = (gy * gy - gx * gx) / size, -(gx * gy + gx * gy) / size
     cos2, sin2 = (blurred(part.astype(np.float32), FIELD, threads) for part in (square, product))
     length = np.sqrt(cos2 * cos2 + sin2 * sin2) + np.float32(1e-9)
@@ -186,9 +187,9 @@ def field(picture: Picture, threads: int) -> tuple[Picture, Picture]:
 
 @dataclass(frozen=True)
 class _Sides:
-    """What is known of the responses of each sign in a bank, first of dark lines, then of light ones.
+    """The responses of a bank by their signs, first those of dark lines, then those of light ones.
 
-    most: the strongest in any direction. around: of what is around. Both (h, w).
+    most: (h, w) the strongest in any direction. around: (h, w) how strong they are in the surroundings.
     """
 
     most: tuple[Picture, Picture]
@@ -196,9 +197,9 @@ class _Sides:
 
 
 def _weighed(bank: oriented.Bank, threads: int) -> _Sides:
-    """Weigh a bank's responses by what is around, in their place; what they were."""
+    """Weigh the responses of a bank, in place, by those around; returns what they were before."""
     sides = oriented.strongest(bank, threads)
-    # a dot answers in every direction, a line in few
+    # a dot responds in every direction, a line in few
     factors = [
         np.clip((1 - mean / (most + np.float32(1e-6))) / np.float32(0.35), 0, 1).astype(np.float32)
         for most, mean in sides
@@ -215,7 +216,10 @@ def _weighed(bank: oriented.Bank, threads: int) -> _Sides:
 def _traced(
     bank: oriented.Bank, sign: float, high: float, ground: Picture, cos2: Picture, sin2: Picture, sides: _Sides
 ) -> Traces:
-    """Lines of one sign in a bank that has been weighed."""
+    """Lines of one sign, 1 for dark and -1 for light ones, in a bank that has been weighed.
+
+    high: the response at which lines begin. ground: (h, w) tone around. sides: as of `_weighed`.
+    """
     around = sides.around[0 if sign > 0 else 1]
     return tracing.traces(bank, sign, high, high * LOW / HIGH, around, ground, cos2, sin2)
 
@@ -225,13 +229,14 @@ def _lines(traces: Traces, shortest: float) -> list[_Line]:
 
     rank = n^¾ · contrast · alone · min(own, 1) · min(own, 1.1) / (1 + bend²) · max(|cos Δ|, 2 clear², 2 light), where
 
-    - n is the length in points of a picture of usual size, at most 60, and contrast the response in parts of FULL;
-    - alone is the response in parts of itself and three times the surroundings': 1 on even ground, little in texture;
-      own is that in parts of ALONE: what wanders through grass is below;
-    - bend is the turning, radians a point, in parts of a quarter;
-    - Δ is the angle to the field of directions: what runs along the form tells it;
-    - clear (contrast · alone, 1 from .55 on) and light (1 where the ground is lighter than a tone of .2, 0 from .3 on)
-      let a line count that runs across the form.
+    - n is the length in points of a picture of usual size, at most 60, and contrast the response in parts of FULL, at
+      most 1;
+    - alone is the response by the sum of itself and three times the surroundings': 1 on even ground, little in texture;
+      own is alone in parts of ALONE, below 1 for a line that wanders through grass;
+    - bend is the turning in parts of a quarter of a radian a point; - Δ is the angle to the field of directions: a line
+    along the form tells of it; - clear is contrast · alone in parts of .55, at most 1, and light is 1 on ground lighter
+    than a tone of .2, 0 from .3
+      on: a line that is clear, or on light ground, counts though it runs across the form.
     """
     length = traces.length / PIXELS_PER_PT
     keep = np.flatnonzero(traces.length >= shortest)
@@ -250,7 +255,7 @@ def _lines(traces: Traces, shortest: float) -> list[_Line]:
 
 
 def _ridges(lines: list[_Line], picture: Picture) -> Floats:
-    """By how much each line is lighter than what lies to that side of it which is lighter, on the mean."""
+    """By how much each line (n,) is on the mean lighter than the lighter of the places beside it, BESIDE pixels off."""
     if not lines:
         return np.zeros(0)
     sizes = np.array([len(line.points) for line in lines])
@@ -267,9 +272,10 @@ def _ridges(lines: list[_Line], picture: Picture) -> Floats:
 
 
 def _spot_line(spot: Spot, strong: Picture) -> _Line:
-    """A spot as a line: of one point where it is round, the smaller the less dark it is: an iris is no hole.
+    """A spot as a line with breadth: of one point where it is round, else of two.
 
-    strong: (h, w) how much of lines there is around each place.
+    The less dark the spot, the less broad the line: an iris is no hole. strong: (h, w) how much lines around each place
+    respond.
     """
     ends = [(spot.x, spot.y, FULL)]
     rank = SPOT * spot.contrast * spot.contrast * spot.contrast
@@ -291,14 +297,14 @@ def _at(values: npt.NDArray[np.generic], points: Floats) -> npt.NDArray[np.gener
 
 
 def _within(points: Floats, inside: Picture) -> bool:
-    """Whether a line is no more than a part of a spot, or of its outline."""
+    """Whether a line is no more than a part of a spot, or of its outline. inside: as of `spots.covered`."""
     there = _at(inside, points)
     n = np.count_nonzero(there)
     return bool(2 * n > len(points) and len(points) < AROUND * float(there.max()))
 
 
 def _near(lines: list[Floats], shape: tuple[int, ...]) -> npt.NDArray[np.bool_]:
-    """(h, w) what is near to a line."""
+    """Which places (h, w) are within NEAR pixels of a line, along x and along y."""
     mask = np.zeros(shape, np.bool_)
     for points in lines:
         x = np.clip((points[:, 0] + 0.5).astype(np.int64), 0, shape[1] - 1)
@@ -316,17 +322,19 @@ def _near(lines: list[Floats], shape: tuple[int, ...]) -> npt.NDArray[np.bool_]:
 
 
 def _far(points: Floats, near: npt.NDArray[np.bool_]) -> bool:
+    """Whether at least FAR of a line lies off the mask."""
     return bool(np.count_nonzero(_at(near, points)) <= (1 - FAR) * len(points))
 
 
 def _at_rim(line: _Line, shape: tuple[int, ...]) -> bool:
+    """Whether all points of a line lie within RIM pixels of the frame."""
     x, y = line.points[:, 0], line.points[:, 1]
     off = np.minimum(np.minimum(x, shape[1] - 1 - x), np.minimum(y, shape[0] - 1 - y))
     return bool(off.max() <= RIM)
 
 
 def _thinned(points: Floats) -> Floats:
-    """About one point every STEP, the first and the last among them: even spacing is kept in the fewest bytes."""
+    """About one point every STEP, the first and the last among them; archives keep even spacing in the fewest bytes."""
     if len(points) < 3:
         return points
     count = max(3, math.ceil((len(points) - 1) / STEP) + 1)
@@ -334,7 +342,10 @@ def _thinned(points: Floats) -> Floats:
 
 
 def _assembled(found: list[_Line], tone: Picture, columns: int, rows: int, width: int, height: int) -> Lines:
-    """The lines in pixels of the photo, dark ones finer on light ground; tone: (height, width) of the ground."""
+    """The lines in pixels of a photo of columns × rows, dark ones finer on light ground.
+
+    tone: (height, width) of the ground in working pixels.
+    """
     parts = [_thinned(line.points) for line in found]
     first = np.zeros(len(parts) + 1, np.int64)
     np.cumsum([len(part) for part in parts], out=first[1:])

@@ -1,8 +1,8 @@
 """A bank of oriented filters: how much each place of a picture looks like a piece of a dark, or light, line.
 
-An elongated difference of Gaussians in each of N directions: a narrow one less one 1.6 times as wide across, which is
-near the negative second derivative across and a low-pass along. Dark lines answer with positive numbers, light ones
-with negative ones.
+Each filter is an elongated difference of Gaussians in one direction: a Gaussian less one that is 1.6 times as wide
+across. That is close to a second derivative across the line, and a low-pass along it. The response to dark lines is
+above 0, that to light ones below.
 
 This module alone imports the compiled kernel `oriented`.
 """
@@ -25,8 +25,8 @@ Picture = npt.NDArray[np.float32]
 Bank = npt.NDArray[np.float32]  # (directions, h, w)
 
 DIRECTIONS = 24  # in half a turn, 7.5° apart
-WIDER = 1.6  # the second Gaussian across
-CUT = 0.012  # taps below this part of the greatest are left away
+WIDER = 1.6  # how many times as wide across the second Gaussian is
+CUT = 0.012  # taps at which the wider Gaussian is below this part of its peak are left out
 _BAND = 32  # rows of a task
 
 
@@ -37,9 +37,9 @@ def units(parts: int) -> Floats:
 
 
 def responses(picture: Picture, across: float, along: float, threads: int) -> Bank:
-    """(DIRECTIONS, h, w) responses to the picture (h, w), which is mirrored in its frame.
+    """(DIRECTIONS, h, w) responses to the picture (h, w), which is mirrored beyond its frame.
 
-    across, along: σ of the narrow Gaussian, pixels. The response to an ideal line of that σ is a fifth of its contrast.
+    across, along: σ of the narrow Gaussian, pixels. A line with that profile has a response of a fifth of its contrast.
     """
     h, w = picture.shape
     r = math.ceil(3 * max(WIDER * across, along))
@@ -62,7 +62,7 @@ def responses(picture: Picture, across: float, along: float, threads: int) -> Ba
 def _taps(
     across: float, along: float, r: int, x: float, y: float
 ) -> tuple[npt.NDArray[np.int32], npt.NDArray[np.int32], npt.NDArray[np.float32]]:
-    """Rows and columns from the window's corner, and weights, of a filter along (x, y)."""
+    """Taps of a filter along (x, y): rows (t,) and columns (t,) in a window of 2 r + 1 pixels a side, weights (t,)."""
     i, j = np.divmod(np.arange((2 * r + 1) ** 2), 2 * r + 1)
     u, v = (j - r) * x + (i - r) * y, (i - r) * x - (j - r) * y
     low = exact.exp(-0.5 * _square(u / along))
@@ -71,7 +71,7 @@ def _taps(
     narrow = low[seen] * exact.exp(-0.5 * _square(v[seen] / across))
     a, b = math.fsum(narrow), math.fsum(wide[seen])
     weights = [round(w / b - n / a, 9) for w, n in zip(wide[seen].tolist(), narrow.tolist())]
-    weights[len(weights) // 2] -= math.fsum(weights)  # even ground answers with nothing
+    weights[len(weights) // 2] -= math.fsum(weights)  # the response to even ground is 0
     return i[seen].astype(np.int32), j[seen].astype(np.int32), np.array(weights, np.float32)
 
 
@@ -80,7 +80,7 @@ def _square(x: Floats) -> Floats:
 
 
 def strongest(bank: Bank, threads: int) -> tuple[tuple[Picture, Picture], tuple[Picture, Picture]]:
-    """The greatest response of dark lines in any direction (h, w), and the mean of those of all; then of light ones."""
+    """The greatest response of dark lines in any direction (h, w), and the mean over all directions; those of light."""
     _, h, w = bank.shape
     most, mean, light_most, light_mean = (np.empty((h, w), np.float32) for _ in range(4))
 
@@ -92,9 +92,9 @@ def strongest(bank: Bank, threads: int) -> tuple[tuple[Picture, Picture], tuple[
 
 
 def weigh(bank: Bank, dark: tuple[Picture, Picture], light: tuple[Picture, Picture], threads: int) -> None:
-    """Weigh a bank in its place: responses r become ± (± r · factor − less), or 0.
+    """Weigh a bank in place: a response r becomes ± (± r · factor − less), or 0 where its sign would change.
 
-    dark, light: factor and less (h, w) of those above 0, and of those below.
+    dark, light: factor and less (h, w) for responses above 0, and for those below.
     """
     work = threading.ranges(lambda top, bottom: oriented.weigh(bank, *dark, *light, top, bottom), bank.shape[1], _BAND)
     threading.share(work, threads)

@@ -1,7 +1,8 @@
 """Small dark things that are no lines: pupils, nostrils, beads, full stops.
 
-Centres are extrema of a difference of Gaussians in place and scale (Lowe 2004, section 3); what hangs together around
-one and is darker than half way to its surroundings is the thing, and its second moments tell how broad and long it is.
+Centres are extrema of a difference of Gaussians in place and scale (Lowe 2004, section 3). The connected pixels around
+a centre that are darker than half way to the surroundings are the thing; its second moments tell how broad and long it
+is.
 """
 
 from __future__ import annotations
@@ -18,30 +19,30 @@ from penink_cli.ground import exact, masks
 from penink_cli.ground.model import Floats
 from penink_cli.lines.oriented import Picture
 
-FINEST, RATIO, SCALES = 1.1, 1.4, 7  # σ of the narrowest Gaussian, pixels; from one to the next; differences of them
-DISC = 0.243  # what such a difference answers to a disc of contrast 1 and the radius it fits best
-FITS = 1.66  # that radius, in σ of its narrower Gaussian
+#: σ of the narrowest Gaussian, pixels; the ratio of each σ to the one before; how many differences there are.
+FINEST, RATIO, SCALES = 1.1, 1.4, 7
+DISC = 0.243  # the response of such a difference to a disc of contrast 1 and the radius that fits it best
+FITS = 1.66  # that radius, in σ of the narrower Gaussian
 CONTRAST = 0.2  # least grey step of a spot
-LONGEST = 2.3  # times as long as broad
-FILLED = 0.82  # the part of its ellipse that it covers
-OPEN = 0.06  # the part of its surroundings that may be as dark
+LONGEST = 2.3  # a spot is at most so many times as long as broad
+FILLED = 0.82  # least part of its ellipse that a spot covers
+OPEN = 0.06  # largest part of a spot's surroundings that may be as dark
 #: Things thinner than THICK of a spot's radius may be attached to it, as lashes are to a pupil: to a spot of at least
 #: LEAST_ATTACHED pixels' radius, and along at most ATTACHED of its border.
 THICK, LEAST_ATTACHED, ATTACHED = 0.5, 3.0, 0.4
-PART = 2.5  # times its area, the most that hangs together with it: more of that and it is the end of another thing
-HOLLOW = 0.2  # the part of it that may be light, as an eye's catchlight is
-CRISP = 0.35  # the part of its contrast that its border, two pixels wide to each side, makes up
-MOST = 600  # candidates looked at, those of the highest contrast
+PART = 2.5  # what is as dark and connected to a spot is at most so many times as large, or the spot is a part of it
+HOLLOW = 0.2  # largest part of a spot that may be light, as an eye's catchlight is
+CRISP = 0.35  # least part of a spot's contrast that lies in its border, within two pixels to either side
+MOST = 600  # candidates that are looked at, those of the highest contrast
 
 
 @dataclass(frozen=True)
 class Spot:
-    """A small dark thing.
+    """A small dark thing: a disc, or what a disc covers on a straight way.
 
-    x, y: its middle, pixel centres at whole numbers. dx, dy: from there to the middle of its rounded end. breadth:
-    pixels. contrast: grey step to its surroundings.
-    crisp: the part of it that its border makes up.
-    dark: how dark it is on the mean, in parts of the way from its surroundings to black.
+    x, y: its middle, pixel centres at whole numbers. dx, dy: from there to the middle of the disc at its end, 0 for a
+    round spot. breadth: pixels. contrast: grey step to its surroundings. crisp: the part of the contrast that lies in
+    its border. dark: how dark it is on the mean, from 0, as its surroundings, to 1, black.
     """
 
     x: float
@@ -73,7 +74,7 @@ def spots(picture: Picture, threads: int) -> list[Spot]:
 
 
 def _maxima(steps: list[Picture], k: int, least: np.float32) -> list[tuple[int, int]]:
-    """Where a difference reaches `least` and is greater than around it in place and scale."""
+    """Rows and columns at which difference k reaches `least` and is greater than its neighbours in place and scale."""
     step = steps[k]
     h, w = step.shape
     rows, columns = np.nonzero(step >= least)
@@ -85,16 +86,16 @@ def _maxima(steps: list[Picture], k: int, least: np.float32) -> list[tuple[int, 
                 if other is step and not di and not dj:
                     continue
                 value, beside = step[rows, columns], other[rows + di, columns + dj]
-                # of equals the first one
+                # of equal values the first counts
                 keep = value > beside if (di, dj) > (0, 0) or other is not step else value >= beside
                 rows, columns = rows[keep], columns[keep]
     return list(zip(rows.tolist(), columns.tolist()))
 
 
 def _spot(sharp: Picture, picture: Picture, taken: np.ndarray, i: int, j: int, radius: float) -> Spot | None:
-    """What lies around (i, j), of about that radius, if it is a spot; its place is then taken.
+    """The spot around (i, j), of about that radius; None where there is none. Its place in `taken` (h, w) is marked.
 
-    sharp, picture: before and after the first smoothing.
+    sharp, picture: (h, w) before and after the first smoothing.
     """
     r = math.ceil(2.8 * radius) + 1
     top, left = max(0, i - r), max(0, j - r)
@@ -129,7 +130,7 @@ def _spot(sharp: Picture, picture: Picture, taken: np.ndarray, i: int, j: int, r
     n = len(rows)
     if np.count_nonzero(masks.part_at(filled, i - top, j - left)) > PART * n:
         return None
-    # whole numbers: exact sums in any order
+    # sums of whole numbers are exact in any order
     my, mx = int(rows.sum()), int(columns.sum())
     yy = int((rows * rows).sum()) / n - (my / n) ** 2 + 1 / 12
     xx = int((columns * columns).sum()) / n - (mx / n) ** 2 + 1 / 12
@@ -150,7 +151,7 @@ def _spot(sharp: Picture, picture: Picture, taken: np.ndarray, i: int, j: int, r
 
 @cache
 def _rim(radius: float, r: int) -> np.ndarray:
-    """What surrounds a spot of that radius: a ring in a window of r pixels to each side."""
+    """The surroundings of a spot of that radius: a ring, as a mask (2 r + 1, 2 r + 1) around its centre."""
     y, x = np.ogrid[-r : r + 1, -r : r + 1]
     away = y * y + x * x
     return (away >= (2.0 * radius) ** 2) & (away <= (2.7 * radius) ** 2)
@@ -161,7 +162,7 @@ def _mean(values: np.ndarray) -> float:
 
 
 def covered(spots: list[Spot], shape: tuple[int, ...], margin: float) -> np.ndarray:
-    """(h, w) how long the spot is that lies there, the margin around it included; 0 for none."""
+    """(h, w) the length, pixels, of the spot that covers a place with a margin around it; 0 where there is none."""
     out = np.zeros(shape, np.float32)
     for spot in spots:
         half = math.sqrt(spot.dx * spot.dx + spot.dy * spot.dy)

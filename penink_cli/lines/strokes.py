@@ -15,15 +15,16 @@ from penink_cli.ground.median import median
 from penink_cli.ground.model import Floats, LineChoice, Lines, Strokes
 from penink_cli.lines.choice import chosen
 
-#: The distance of knots, and the σ, about, over which lines are smoothed, points.
+#: Points: the distance of knots, and about the σ over which lines are smoothed.
 KNOT_PT, SMOOTH_PT = 3.0, 0.6
 #: The finest line that a pen draws, in parts of its broadest; the length of a tip, points; its width at the end, in
 #: parts of the line's.
 FINEST, TIP_PT, TIP = 0.25, 12.0, 0.45
-#: Ruled lines stray from what they follow by so much at the most; what has no straight piece so long is drawn by hand,
-#: and none goes beyond its corner by more than that part of itself.
+#: A ruled line strays from the line it follows by at most RULED_PT. A line without a straight piece of STRAIGHT_PT is
+#: drawn by hand. No piece goes beyond its corner by more than the part BEYOND of its length.
 RULED_PT, STRAIGHT_PT, BEYOND = 1.2, 9.0, 0.25
-#: Loose lines stray anew every so many points; the second one is so much finer, and they begin and end so far apart.
+#: A loose line strays anew every STRAYS_PT; the second line is finer by the factor SECOND; the lines begin and end up
+#: to APART times as far apart as they stray.
 STRAYS_PT, SECOND, APART = 16.0, 0.7, 4.0
 
 
@@ -33,8 +34,8 @@ def line_strokes(
 ) -> Strokes:  # fmt: skip
     """Strokes along the dark lines, or the white ones, the most telling first, on a sheet of width_pt × height_pt.
 
-    They are so much finer as a printer of that resolution paints them broader, unless one pen draws them all.
-    A small print, whose pens are finer, has room for the lines of one that is as much larger.
+    The strokes are as much finer as a printer of that resolution paints them broader, unless one pen draws them all.
+    A small print, whose pens are finer, has room for the lines of a print that is as much larger.
     """
     by = 1.0 if choice.even else pens.part(width_pt)
     scale = np.array([width_pt / lines.width, height_pt / lines.height])
@@ -67,7 +68,10 @@ def line_strokes(
 
 
 def _ruled(points: Floats, beyond: float) -> list[Floats]:
-    """Straight cubics from corner to corner of a line (k, 2), and beyond; none if it has no straight piece."""
+    """Straight cubics (4, 2) from corner to corner of a line (k, 2) and beyond; none where it has no straight piece.
+
+    beyond: points that they go beyond the corners.
+    """
     corners = [0, len(points) - 1]
     left = [(0, len(points) - 1)]
     while left:
@@ -92,7 +96,7 @@ def _ruled(points: Floats, beyond: float) -> list[Floats]:
 
 
 def _strays(knots: Floats, by: float, seed: int) -> list[Floats]:
-    """The line through knots (k, 2) as a hand draws it twice, loosely: each time it strays otherwise."""
+    """The line through knots (k, 2) as a hand draws it twice, loosely, each time straying by about `by` points."""
     rng = np.random.default_rng([seed, 17])
     run = np.concatenate([[0.0], np.cumsum(lengths(knots))])
     along = np.gradient(knots, axis=0)
@@ -106,7 +110,7 @@ def _strays(knots: Floats, by: float, seed: int) -> list[Floats]:
         aside = by * (rng.uniform(-0.7, 0.7, len(at)) + 0.5 * side)
         ends = rng.uniform(-0.5, 1.0, 2) * np.minimum(APART * by, length / 6)
         smooth = np.interp(run, at, aside)
-        # a stroke that goes on a little, or stops short
+        # towards its ends the stroke is stretched along itself, so that it goes on a little, or stops short
         moved = knots + across * smooth[:, None]
         share = np.clip(1 - np.minimum(run, length - run) / max(length / 3, 1e-9), 0, 1)[:, None]
         first = (run < length / 2)[:, None]
@@ -115,7 +119,7 @@ def _strays(knots: Floats, by: float, seed: int) -> list[Floats]:
 
 
 def _knots(points: Floats, weight: Floats) -> tuple[Floats, Floats, bool]:
-    """Knots (k, 2) of a smooth curve through the points, the weight at each, and whether it closes."""
+    """Knots (k, 2) of a smooth curve through the points, the weight at each knot, and whether the curve is closed."""
     steps = lengths(points)
     gap = points[0] - points[-1]
     ring = len(points) > 5 and math.sqrt(float(gap[0] * gap[0] + gap[1] * gap[1])) < float(steps.max()) / 3
@@ -148,7 +152,7 @@ def _dense(points: Floats, weight: Floats, ring: bool) -> tuple[Floats, Floats]:
 
 
 def _widths(knots: Floats, weight: Floats, ring: bool, pen_pt: float) -> Floats:
-    """The width at each knot: as the line is weighed, finer towards its tips, and finer all along where it is short."""
+    """The width (k,) at each knot, points: by the weight, finer towards the tips, and finer all along a short line."""
     run = np.concatenate([[0.0], np.cumsum(lengths(knots))])
     length = float(run[-1])
     tip = np.ones(len(knots))

@@ -12,12 +12,16 @@ from penink_cli.ground.model import Floats, GreyImage, Strokes
 from penink_cli.measuring import tone
 from penink_cli.measuring.lines import places
 
-STEP_PT = 1.0  # between the places of strokes that are looked at
+STEP_PT = 1.0  # between the places along strokes that are compared
 
 
 @dataclass(frozen=True)
 class Difference:
-    """tone: the largest difference, percent of solid ink; tone_rms: the root mean square of all; place: the largest."""
+    """How far two drawings or pictures are apart.
+
+    tone: the largest difference of tone, percent of solid ink. tone_rms: the root mean square of all, percent. place:
+    of drawings the largest distance, points; of pictures the reach, pixels, within which tones were compared.
+    """
 
     tone: float
     tone_rms: float
@@ -25,7 +29,11 @@ class Difference:
 
 
 def of_strokes(a: Strokes, b: Strokes, max_pixels: int, threads: int) -> Difference:
-    """Of two drawings on sheets of one size: tone as the eye sees it; points by which a stroke of either lies apart."""
+    """The difference of two drawings on sheets of one size, tones as the eye sees them.
+
+    place: how far a place of a stroke of either is from the nearest stroke of the other. Raises LimitError for a sheet
+    of more pixels than allowed.
+    """
     apart = tone.seen(tone.printed([a], max_pixels, threads) - tone.printed([b], max_pixels, threads), threads)
     rms = 100 * float(np.sqrt(np.mean(apart * apart)))
     place = max(_farthest(a, b), _farthest(b, a))
@@ -33,15 +41,15 @@ def of_strokes(a: Strokes, b: Strokes, max_pixels: int, threads: int) -> Differe
 
 
 def _farthest(strokes: Strokes, others: Strokes) -> float:
-    """How far the place of the strokes is from the others' lines that is farthest from them."""
+    """The largest distance of a place of the strokes from the others' lines, points; infinite where there are none."""
     if not len(strokes):
         return 0.0
     if not len(others):
         return float("inf")
-    points, _, _ = places(strokes, STEP_PT)
-    there, owner, _ = places(others, STEP_PT)
+    points, _ = places(strokes, STEP_PT)
+    there, owner = places(others, STEP_PT)
     away, nearest = cKDTree(there).query(points)
-    for step in (-1, 1):  # the line from the nearest place to the one before it, and after it
+    for step in (-1, 1):  # the line from the nearest place to the place before it, and after it
         end = np.clip(nearest + step, 0, len(there) - 1)
         end = np.where(owner[end] == owner[nearest], end, nearest)
         away = np.minimum(away, _from_segment(points, there[nearest], there[end]))
@@ -58,7 +66,10 @@ def _from_segment(points: Floats, begin: Floats, end: Floats) -> Floats:
 
 
 def of_pictures(a: GreyImage, b: GreyImage, reach: int) -> Difference:
-    """Of two pictures of one size: how far a pixel's grey is, in percent, from all greys of the other within reach."""
+    """The difference of two pictures of one size: how far a pixel's grey is from all greys of the other within reach.
+
+    reach: pixels, to each side.
+    """
     one, other = a.values / float(a.maxval), b.values / float(b.maxval)
     apart = np.maximum(_outside(one, other, reach), _outside(other, one, reach))
     rms = float(np.sqrt(np.mean((one - other) ** 2)))
@@ -66,7 +77,7 @@ def of_pictures(a: GreyImage, b: GreyImage, reach: int) -> Difference:
 
 
 def _outside(values: Floats, others: Floats, reach: int) -> Floats:
-    """How far values lie outside what the others have within so many pixels."""
+    """How far values (h, w) lie below the least and above the greatest of the others within so many pixels."""
     low = high = others
     for axis in (0, 1):
         padding = [(0, 0), (0, 0)]

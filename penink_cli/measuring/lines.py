@@ -15,18 +15,20 @@ from penink_cli.ground.model import Floats, Ints, Strokes
 from penink_cli.travel.order import drawn_length, travel_length
 
 STEP_PT = 1.5  # between the places along strokes that are looked at
-REACH_PT = 9.0  # to a neighbour: those farther away are not seen as a pair
+REACH_PT = 9.0  # strokes farther apart are not seen as neighbours
 PARALLEL = 0.966  # the cosine of 15 degrees
-NEAREST_PT = 0.05  # strokes nearer than that are one
-PLACES = 10_000  # at which evenness is looked at, spread over all strokes
-LIFT_PT = 0.05  # a stroke that begins nearer than that to the last one's end needs no lift
+NEAREST_PT = 0.05  # strokes nearer than that are one line
+PLACES = 10_000  # about as many places, spread over all strokes, tell evenness
+LIFT_PT = 0.05  # a stroke that begins nearer than that to the end of the one before needs no lift
 
 
 @dataclass(frozen=True)
 class LineFigures:
-    """evenness: 1 where each stroke lies midway between its neighbours, 0 where it touches one; None without any.
+    """How strokes lie. Lengths are in points.
 
-    lifts: of the pen between strokes, in the order they are in; lengths in points.
+    evenness: 1 where each stroke lies midway between its neighbours, 0 where it touches one; None where no stroke has
+    neighbours on both sides. lifts, travel_pt: of the pen between strokes in their order; travel from layer to layer is
+    left out.
     """
 
     evenness: float | None
@@ -38,7 +40,7 @@ class LineFigures:
 
 
 def figures(layers: Sequence[Strokes]) -> LineFigures:
-    """Of all layers, drawn one after the other."""
+    """The figures of all layers, at least one, drawn one after the other."""
     count = sum(map(len, layers))
     drawn = [layer for layer in layers if len(layer)]
     length = math.fsum(drawn_length(layer) for layer in drawn)
@@ -53,21 +55,21 @@ def _lifts(strokes: Strokes) -> int:
     return int(np.count_nonzero(exact.length(starts - ends) > LIFT_PT))
 
 
-def places(strokes: Strokes, step: float) -> tuple[Floats, Ints, curves.Polylines]:
-    """Points along all strokes about step apart, the stroke of each, and these as polylines."""
+def places(strokes: Strokes, step: float) -> tuple[Floats, Ints]:
+    """Points (p, 2) along all strokes, about `step` points apart, and the stroke of each (p,)."""
     lines = curves.sample(strokes.points, strokes.first, curves.pieces_of(strokes.points, strokes.first, step))
-    return lines.points, np.repeat(np.arange(len(strokes)), np.diff(lines.first)), lines
+    return lines.points, np.repeat(np.arange(len(strokes)), np.diff(lines.first))
 
 
 def evenness(strokes: Strokes) -> float | None:
-    """How evenly strokes lie between their neighbours on both sides, of those that run the same way within 15 degrees.
+    """How evenly strokes lie between neighbours that run the same way within 15 degrees; None where there are none.
 
-    At a place on a stroke, a and b are the distances across it to the next strokes on either side, and
-    1 - |a - b| / (a + b) counts. It says nothing of tone, and is the same for any direction and any scale.
+    At a place on a stroke, a and b are the distances across it to the next strokes on either side. The result is the
+    mean of 1 - |a - b| / (a + b). It says nothing of tone, and does not depend on direction or scale.
     """
     if len(strokes) < 3:
         return None
-    points, owner, _ = places(strokes, STEP_PT)
+    points, owner = places(strokes, STEP_PT)
     after = np.minimum(np.arange(1, len(points) + 1), len(points) - 1)
     before = np.maximum(np.arange(-1, len(points) - 1), 0)
     forward = np.where(owner[after] == owner, after, np.arange(len(points)))

@@ -1,4 +1,4 @@
-"""Tone as the eye sees it: ink and what was wanted, each low-passed, on one grid.
+"""Tone as the eye sees it: the ink and the tone wanted, each low-passed, on one grid.
 
 The eye is a Gaussian of 1/16 inch; the grid has 100 cells an inch. Figures are percent of solid ink.
 """
@@ -24,7 +24,11 @@ WHITE = 0.5 / 255  # tone below which paper is to stay white
 
 @dataclass(frozen=True)
 class ToneFigures:
-    """Wanted less printed, percent: root mean square, mean (above 0: too light), largest; ink where paper is white."""
+    """Tone wanted less tone printed, percent of solid ink.
+
+    rms: root mean square. bias: mean; above 0 the drawing is too light. worst: the largest, either way. stray: mean ink
+    where the paper is to stay white.
+    """
 
     rms: float
     bias: float
@@ -33,14 +37,14 @@ class ToneFigures:
 
 
 def grid_of(width_pt: float, height_pt: float, max_pixels: int) -> tuple[int, int]:
-    """Columns and rows of cells of a sheet. Raises LimitError for more pixels of ink than allowed."""
+    """Columns and rows of cells over a sheet. Raises LimitError where its ink would take more pixels than allowed."""
     columns, rows = (max(1, round(side / 72 * GRID)) for side in (width_pt, height_pt))
     check_size(FINE * columns, FINE * rows, max_pixels)
     return columns, rows
 
 
 def printed(layers: Sequence[Strokes], max_pixels: int, threads: int) -> Picture:
-    """The share of each cell (rows, columns) that ink covers, all layers over one another."""
+    """The share of each cell (rows, columns) that ink covers, all layers over one another; see `grid_of`."""
     page = lay_out(layers)
     columns, rows = grid_of(page.width, page.height, max_pixels)
     dpi = FINE * GRID
@@ -51,7 +55,7 @@ def printed(layers: Sequence[Strokes], max_pixels: int, threads: int) -> Picture
 
 
 def wanted(image: GreyImage, columns: int, rows: int, threads: int = 1) -> Picture:
-    """The tone of an image that fills the sheet, by cells."""
+    """The tone (rows, columns) of an image that fills the sheet."""
     height, width = image.values.shape
     if columns <= width and rows <= height:
         return 1 - shrunk(image.values, columns, rows, 1 / image.maxval, threads)
@@ -59,7 +63,7 @@ def wanted(image: GreyImage, columns: int, rows: int, threads: int = 1) -> Pictu
 
 
 def figures(want: Picture, have: Picture, threads: int = 1) -> ToneFigures:
-    """How far the tone that a drawing has is from the one wanted (rows, columns)."""
+    """How far the tone that a drawing has is from the tone wanted, both (rows, columns)."""
     error = 100 * seen(want - have, threads)
     white = _inner(want <= WHITE)
     stray = 100 * float(have[white].mean(dtype=np.float64)) if white.any() else 0.0
@@ -68,12 +72,12 @@ def figures(want: Picture, have: Picture, threads: int = 1) -> ToneFigures:
 
 
 def seen(tone: Picture, threads: int = 1) -> np.ndarray:
-    """A picture by cells as the eye sees it."""
+    """A picture (rows, columns) as the eye sees it."""
     return blurred(tone, EYE_INCH * GRID, threads).astype(np.float64)
 
 
 def _inner(cells: np.ndarray) -> np.ndarray:
-    """The cells whose neighbours all hold as well: a stroke beside them may reach into others."""
+    """The cells of a mask whose eight neighbours are in it too: a stroke beside the mask may reach into the others."""
     padded = np.pad(cells, 1, mode="edge")
     rows, columns = cells.shape
     inner = np.ones_like(cells)

@@ -1,12 +1,13 @@
 """How long a plotter takes: lifts, acceleration and corners count.
 
-The pen moves as a machine moves that has a constant acceleration and a top speed, and that may pass a corner only so
-fast that it leaves it by no more than a distance (`Motion.corner`)::
+The pen has a constant acceleration a and a top speed. It may pass a corner only so fast that a round corner with this
+acceleration would leave it by no more than the distance δ (`Motion.corner`)::
 
     v² = a · δ · s / (1 − s)        s = sin(φ / 2), φ the angle between the two legs: 1 straight on, 0 back again
 
-(the cornering rule of Grbl; constants of an AxiDraw as the plotter program saxi has them). Between corners it speeds
-up and slows down: the speed at each place is the most from which all that follows can be obeyed.
+This is the cornering rule of Grbl; the constants are those that the plotter program saxi has for an AxiDraw. Between
+corners the pen speeds up and slows down: its speed at each place is the greatest from which all that follows can be
+obeyed.
 """
 
 from __future__ import annotations
@@ -20,8 +21,8 @@ from penink_cli.ground import exact
 from penink_cli.ground.model import Floats, Ints, Strokes
 
 MM = 25.4 / 72
-STILL = 1e-6  # points: a shorter leg is none
-FLAT_MM = 0.02  # how far the chords that a curve is drawn by may be from it
+STILL = 1e-6  # points: a shorter leg is left out
+FLAT_MM = 0.02  # how far the chords by which a curve is drawn may be from it
 
 
 @dataclass(frozen=True)
@@ -35,7 +36,7 @@ class Motion:
 
 @dataclass(frozen=True)
 class Plotter:
-    """down, up: with the pen down and up. lift: seconds that raising the pen takes, and lowering it."""
+    """down, up: the motion with the pen down and up. lift: seconds for raising the pen, and as many for lowering it."""
 
     down: Motion = Motion(50.0, 200.0)
     up: Motion = Motion(200.0, 400.0, 0.0)
@@ -43,9 +44,9 @@ class Plotter:
 
 
 def seconds(layers: Sequence[Strokes], plotter: Plotter, x: float = 0.0, y: float = 0.0) -> float:
-    """From the page's corner, where the pen rests, over all strokes in their order, and back.
+    """Seconds from the page's corner, where the pen rests, over all strokes in their order, and back.
 
-    x, y: where the sheet lies on the page, points.
+    x, y: the sheet's corner on the page, points.
     """
     return seconds_by_speeds([(layer, None) for layer in layers], plotter, x, y)
 
@@ -53,7 +54,7 @@ def seconds(layers: Sequence[Strokes], plotter: Plotter, x: float = 0.0, y: floa
 def seconds_by_speeds(
     layers: Sequence[tuple[Strokes, float | None]], plotter: Plotter, x: float = 0.0, y: float = 0.0
 ) -> float:
-    """The same, each layer with the speed (points a second) of its pen, None for the plotter's."""
+    """As `seconds`, each layer with the speed of its pen when it is down, points a second; None for the plotter's."""
     total = 0.0
     at = np.zeros((1, 2))
     for layer, speed in layers:
@@ -70,12 +71,12 @@ def seconds_by_speeds(
 
 
 def _added(values: Floats) -> float:
-    """The sum, in microseconds: whole numbers have one on every machine."""
+    """The sum of values, each rounded to millionths: sums of whole numbers are the same on every machine."""
     return int(np.rint(values * 1e6).astype(np.int64).sum()) / 1e6
 
 
 def from_rest(length: Floats, motion: Motion) -> Floats:
-    """Seconds for straight ways of that length, mm, from rest to rest."""
+    """Seconds (n,) for straight ways of that length (n,), mm, from rest to rest."""
     v, a = motion.speed, motion.acceleration
     return np.asarray(np.where(length * a >= v * v, length / v + v / a, 2.0 * np.sqrt(length / a)))
 
@@ -85,21 +86,21 @@ def drawn_seconds(strokes: Strokes, motion: Motion) -> Floats:
     points, first = chords(strokes)
     points = points * MM
     count = np.diff(first)
-    order = np.argsort(-count, kind="stable")  # the longest first: those that still have a k-th chord stand together
+    order = np.argsort(-count, kind="stable")  # most chords first: strokes that have a k-th chord stand together
     begins, count = first[:-1][order], count[order]
     most = int(count.max(initial=1)) - 1
     if most < 1:
         return np.zeros(len(strokes))
     legs = np.diff(points, axis=0)
     length = exact.length(legs)
-    limit = _corners(legs, length, motion)  # squared speed at the beginning of each leg but the first
+    limit = _corners(legs, length, motion)  # squared, at the beginning of each leg but the first
     twice = 2.0 * motion.acceleration
     speed = np.zeros(len(points))  # squared, at each point
-    having = [int(np.searchsorted(-count, -(k + 1), side="left")) for k in range(most)]  # strokes with a k-th leg
-    for k in range(1, most):  # speeding up: not faster than what lies behind allows
+    having = [int(np.searchsorted(-count, -(k + 1), side="left")) for k in range(most)]  # how many have a k-th leg
+    for k in range(1, most):  # speeding up: no faster than the way so far allows
         at = begins[: having[k]] + k
         speed[at] = np.minimum(limit[at - 1], speed[at - 1] + twice * length[at - 1])
-    for k in range(most - 1, 0, -1):  # slowing down for what lies ahead
+    for k in range(most - 1, 0, -1):  # slowing down in time for what lies ahead
         at = begins[: having[k]] + k
         speed[at] = np.minimum(speed[at], speed[at + 1] + twice * length[at])
     total = np.zeros(len(strokes))
@@ -128,9 +129,9 @@ def _corners(legs: Floats, length: Floats, motion: Motion) -> Floats:
 
 
 def chords(strokes: Strokes) -> tuple[Floats, Ints]:
-    """Points (p, 2) of the polylines that strokes are drawn as, and where each begins (s + 1,).
+    """Points (p, 2) of the polylines as which strokes are drawn, and where each stroke's points begin (s + 1,).
 
-    A segment is cut evenly into so many that none is farther than FLAT_MM from the curve.
+    A segment is cut evenly into so many chords that none is farther than FLAT_MM from the curve.
     """
     counts = np.diff(strokes.first)
     segments = (counts - 1) // 3
@@ -157,7 +158,7 @@ def chords(strokes: Strokes) -> tuple[Floats, Ints]:
     rest = np.ones(len(points), bool)
     rest[first[:-1]] = False
     points[rest] = p[:, 0]
-    kept = ~rest  # and not where the pen stands still
+    kept = ~rest  # first points, and those to which the pen moves
     kept[1:] |= exact.length(points[1:] - points[:-1]) > STILL
     return points[kept], np.concatenate([[0], np.cumsum(kept)])[first]
 
@@ -174,10 +175,7 @@ def drawn_by_stroke(strokes: Strokes) -> Floats:
 
 
 def split(strokes: Strokes, most: float) -> list[Strokes]:
-    """The strokes in their order, in groups of which a pen draws no more than `most` points of length.
-
-    A stroke that is longer by itself is a group by itself.
-    """
+    """The strokes in their order, in groups of at most `most` points; a longer stroke is a group by itself."""
     groups, begin, used = [], 0, 0.0
     for i, length in enumerate(drawn_by_stroke(strokes).tolist()):
         if used and used + length > most + 1e-3:
@@ -188,5 +186,5 @@ def split(strokes: Strokes, most: float) -> list[Strokes]:
 
 
 def with_one_pen(strokes: Strokes, width: float) -> Strokes:
-    """Strokes that a pen of that width draws: their middles."""
+    """The strokes as a pen of that width draws them, along their middles."""
     return replace(strokes, widths=np.full(len(strokes), width), knot_widths=None)

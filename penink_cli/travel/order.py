@@ -1,7 +1,9 @@
-"""Order strokes for a pen: short ways between them, ends that meet joined.
+"""Order strokes for a pen: short ways between them, and ends that meet joined.
 
-The tour goes from the sheet's top-left corner always to the nearest end (kernel `tree`), and is then
+From the sheet's top-left corner a tour goes always to the nearest end (kernel `tree`). It is then
 shortened by 2-opt and Or-opt (kernel `improve`). Every stroke may be drawn from either end.
+
+This module alone imports the compiled kernels.
 """
 
 from __future__ import annotations
@@ -17,10 +19,10 @@ from penink_cli.ground.model import Floats, Ints, Strokes
 from penink_cli.travel._compiled import improve as _improve
 from penink_cli.travel._compiled import tree as _tree
 
-NEIGHBOURS = 10
-STEPS = 4000  # per stroke: some ten times what usual drawings take, so a bound on hostile ones
-_FEW = _tree.LEAF // 2  # strokes that a tree has in one leaf, and that are found without it
-SLICE = 20  # steps per stroke between two reports of progress
+NEIGHBOURS = 10  # ends near each end that exchanges try
+STEPS = 4000  # of exchanges, a stroke: some ten times what usual drawings take, so it bounds hostile ones alone
+_FEW = _tree.LEAF // 2  # strokes whose ends fit into one leaf: they are ordered without a tree
+SLICE = 20  # steps a stroke between two reports of progress
 
 
 def ordered(
@@ -28,8 +30,9 @@ def ordered(
 ) -> Strokes:
     """The same strokes in an order, and each in a direction, that a pen can follow quickly.
 
-    Without ``improve`` always the nearest next, which is some 15 to 25 % longer and takes a
-    tenth of the time. Cost n log n; deterministic. ``advance`` is told of progress, in strokes, to twice their number.
+    improve: without it the nearest stroke always comes next, which is some 15 to 25 % longer and takes
+    a tenth of the time. advance: is told of progress in strokes, to twice their number. The time grows
+    as n log n, and the result is deterministic.
     """
     n = len(strokes)
     if n == 0:
@@ -46,9 +49,9 @@ def ordered(
 
 
 def ordered_each(strokes: Strokes, first: Ints) -> Strokes:
-    """The same strokes, of which each run first[g] … first[g + 1] - 1 is ordered by itself, always the nearest next.
+    """The same strokes, each run first[g] … first[g + 1] - 1 ordered by itself as `ordered` does without `improve`.
 
-    As `ordered` does it without `improve`; a drawing has a thousand runs, most of them of one stroke or two.
+    A drawing has a thousand runs, most of them of one or two strokes, so short runs are ordered together.
     """
     n = len(strokes)
     count = np.diff(first)
@@ -93,7 +96,7 @@ def _tour(ends: Floats, improve: bool, advance: Callable[[int], None]) -> tuple[
     n = len(ends) // 2
     order = np.argsort(_morton(ends), kind="stable").astype(np.int32)
     dots = (ends[0::2] == ends[1::2]).all(axis=1)
-    order = order[~((order & 1 == 1) & dots[order // 2])]  # of a dot one end will do
+    order = order[~((order & 1 == 1) & dots[order // 2])]  # both ends of a dot are one
     used = np.zeros(n, np.uint8)
     near = np.empty((2 * n, NEIGHBOURS), np.int32)
     if improve:
@@ -103,7 +106,7 @@ def _tour(ends: Floats, improve: bool, advance: Callable[[int], None]) -> tuple[
     pen = np.zeros(2)
     place = np.full(2 * n, -1, np.int32)
     done = 0
-    while done < n:  # a tree half empty is slow to search: plant a smaller one
+    while done < n:  # a tree half empty is slow to search, so a smaller one is planted
         order = order[used[order // 2] == 0]
         place[order] = np.arange(len(order), dtype=np.int32)
         upto = done + max((n - done) // 2, min(n - done, 64))
@@ -123,7 +126,7 @@ def _tour(ends: Floats, improve: bool, advance: Callable[[int], None]) -> tuple[
         budget = _improve.improve(
             ends, near, tour, whereabouts, flips, queue, waiting, state, budget, max(0, budget - SLICE * n)
         )
-        advance(min(n, int(state[2])) - seen)  # most of the work is the first look at each
+        advance(min(n, int(state[2])) - seen)  # most of the work is the first look at each stroke
         seen = min(n, int(state[2]))
     advance(n - seen)
     opened = np.roll(tour, -1 - int(whereabouts[n]))[:n].astype(np.int64)
@@ -136,7 +139,7 @@ def _tour(ends: Floats, improve: bool, advance: Callable[[int], None]) -> tuple[
 
 
 def _planted(ends: Floats, order: np.ndarray) -> tuple[Floats, np.ndarray, Floats, np.ndarray]:
-    """The arrays of a tree over these ends: sorted points, order, boxes, alive."""
+    """A tree over these ends of all `ends` (2n, 2), as of the kernel: sorted points, order, boxes, alive."""
     leaves = 1 << max(0, (-(-len(order) // _tree.LEAF) - 1).bit_length())
     tree = ends[order], order, np.empty((2 * leaves, 4)), np.empty(2 * leaves, np.int32)
     _tree.build(tree[0], *tree[2:])
@@ -144,19 +147,19 @@ def _planted(ends: Floats, order: np.ndarray) -> tuple[Floats, np.ndarray, Float
 
 
 def _morton(points: Floats) -> Ints:
-    """Place of each point along a Morton curve of 2^26 × 2^26 cells over their bounding box, or of their ranks."""
+    """The place (n,) of each point (n, 2) along a Morton curve, over 2^26 × 2^26 cells of their box or over ranks."""
     low = points.min(axis=0)
     side = float((points - low).max())
     codes = _interleaved(((points - low) * ((2**26 - 1) / side if side > 0 else 0.0)).astype(np.int64))
     if len(points) > 1000 and len(distinct(codes[::97])) < len(codes[::97]) / 2:
-        # Most points share cells, as beside one that is far off. Ranks are spread evenly, wherever the points are.
+        # Most points share cells, as they do where one point lies far off. Ranks are spread evenly wherever points lie.
         ranks = np.argsort(np.argsort(points, axis=0, kind="stable"), axis=0, kind="stable")
         codes = _interleaved(ranks)
     return codes
 
 
 def _interleaved(cells: Ints) -> Ints:
-    """Bits of x and y (n, 2), below 2^32, by turns."""
+    """Numbers (n,) whose bits are those of x and y (n, 2), below 2^32, by turns."""
     for shift, mask in ((16, 0x0000FFFF0000FFFF), (8, 0x00FF00FF00FF00FF), (4, 0x0F0F0F0F0F0F0F0F),
                         (2, 0x3333333333333333), (1, 0x5555555555555555)):  # fmt: skip
         cells = (cells | (cells << shift)) & mask
@@ -164,10 +167,10 @@ def _interleaved(cells: Ints) -> Ints:
 
 
 def joined(strokes: Strokes, tolerance: float) -> Strokes:
-    """Strokes whose ends meet the next one's beginning, within ``tolerance`` points, drawn in one go.
+    """The strokes, each joined to the next where its end is within ``tolerance`` points of the next one's beginning.
 
-    Only strokes of one width where they meet are joined, and dots never. The later stroke's beginning moves to
-    the earlier one's end, so nothing else of the ink changes than by the tolerance.
+    Strokes are joined only where both have the same width there, and dots never. The later stroke's beginning
+    moves to the earlier one's end, so the ink changes by no more than the tolerance.
     """
     n = len(strokes)
     if n < 2:
@@ -195,7 +198,7 @@ def travel_length(strokes: Strokes) -> float:
 def drawn_length(strokes: Strokes) -> float:
     """Length of all strokes in points, to within a few parts in a million.
 
-    Every segment by Gauss and Legendre's quadrature of its speed at eight places.
+    The speed along each segment is integrated by Gauss and Legendre's quadrature at eight places.
     """
     counts = np.diff(strokes.first)
     inner = np.arange(len(strokes.points)) - np.repeat(strokes.first[:-1], counts)

@@ -32,7 +32,7 @@ COMMANDS = [
     (["enlarge", "small.pgm", *EDGES, "--scale", "0.4"], ["search"]),
     (["reduce", "small.pgm", *EDGES, "--factor", "3", "--fit", "lsq", "--photo", "small.pgm"], SEARCH),
     (["compose", "small.pgm", "--width", "1in"], ["filters"]),
-    (["detect-lines", "small.pgm"], ["masks"]),
+    (["detect-lines", "small.pgm"], ["masks", "tracing"]),
     (["detect-edges", "small.pgm"], ["gaussian", "ridges"]),
     (["outline", "crowd.edges.json", "--width", "1in"], ["curve_fitting", "trails"]),
 ]

@@ -1,1 +1,1 @@
-"""Compiled loops of this room."""
+"""Compiled: this room's kernels. The build finds them here."""

@@ -1,9 +1,9 @@
 # cython: boundscheck=False, wraparound=False, cdivision=True
-"""What surrounds a place, and the smooth solve of a field: sums in one fixed order, the same on every machine."""
+"""How much a place is surrounded by edges, and the solver of a smooth field. Sums are in one fixed order."""
 
 
 def surrounded(const unsigned char[:, ::1] walls, double reach, const double[:, ::1] rays, double[:, ::1] out):
-    """The part of the rays from each place of out (h, w) that meet a wall within reach.
+    """Fill in out (h, w): the part, 0 … 1, of the rays from each place that meet a wall within reach.
 
     walls: (2 h, 2 w), above 0 where an edge passes. reach: in pixels of walls. rays: (n, 2) unit vectors.
     """
@@ -32,7 +32,7 @@ cdef void applied(
     const double[:, ::1] right, const double[:, ::1] down, const double[:, ::1] own,
     const double[:, :, ::1] x, double[:, :, ::1] out,
 ) noexcept nogil:
-    """out = A x: own · x and, over each link, its weight times the difference to the neighbour."""
+    """out = A x: own · x and, for each link, its weight times the difference to the neighbour; see `solve`."""
     cdef Py_ssize_t h = own.shape[0], w = own.shape[1], p = x.shape[2], i, j, k
     cdef double total
     for i in range(h):
@@ -54,11 +54,12 @@ def solve(
     const double[:, ::1] right, const double[:, ::1] down, const double[:, ::1] own,
     const double[:, :, ::1] b, double[:, :, ::1] x, double[:, :, :, ::1] room, double tolerance, int most,
 ):
-    """Solve A x = b for p planes at once by conjugate gradients, preconditioned by the diagonal; the rounds it took.
+    """Solve A x = b for p planes at once by conjugate gradients, preconditioned by the diagonal.
 
-    A is own on the diagonal and the graph's Laplacian: right (h, w) the links to the next in the row, down those to the
-    next row; the last column of the one and the last row of the other are not used. x: (h, w, p), begun from. room:
-    four times as much. Ends where the residual is below the tolerance, relative to b, in the preconditioner's measure.
+    A is the sum of the diagonal `own` (h, w) and of the Laplacian of a grid of links: right (h, w) has the weights of
+    links to the next sample in the row, down (h, w) those to the next row; the last column of right and the last row of
+    down are not used. b: (h, w, p). x: (h, w, p), the first guess, then the solution. room: (4, h, w, p) to work in.
+    tolerance: of the residual relative to b, in the preconditioner's norm. most: rounds. Returns the rounds it took.
     """
     cdef Py_ssize_t h = own.shape[0], w = own.shape[1], p = x.shape[2], i, j, k
     cdef double[:, :, ::1] r = room[0], z = room[1], d = room[2], q = room[3]
@@ -80,7 +81,7 @@ def solve(
                 diagonal = 1.0 / diagonal
                 for k in range(p):
                     r[i, j, k] = b[i, j, k] - q[i, j, k]
-                    z[i, j, k] = diagonal  # kept here: the preconditioned residual is needed nowhere else
+                    z[i, j, k] = diagonal  # the preconditioner's factor
                     d[i, j, k] = diagonal * r[i, j, k]
                     rho += r[i, j, k] * d[i, j, k]
                     size += b[i, j, k] * diagonal * b[i, j, k]

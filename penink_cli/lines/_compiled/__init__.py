@@ -1,1 +1,1 @@
-"""Compiled loops of this room; each is imported by one module beside this folder."""
+"""Compiled: this room's kernels. Each is imported by one module beside this folder; the build finds them here."""

@@ -1,5 +1,8 @@
 # cython: boundscheck=False, wraparound=False, cdivision=True
-"""Compiled: a picture through a bank of oriented filters. See oriented.py."""
+"""Compiled: a picture through a bank of oriented filters. See oriented.py.
+
+A bank is (n, h, w): the responses of n directions at each place, above 0 for dark lines and below for light ones.
+"""
 
 
 cdef extern from "taps.h" nogil:
@@ -24,9 +27,10 @@ def respond(
     const float[:, ::1] padded, const Py_ssize_t[::1] offset, const float[::1] weight,
     float[:, ::1] out, Py_ssize_t top, Py_ssize_t bottom,
 ):
-    """Rows top … bottom of out (h, w): the weighted sums of padded at as many offsets, in order.
+    """Fill in rows top … bottom - 1 of out (h, w): sums of padded at offset (t,) times weight (t,), in that order.
 
-    offset: from a place's number in padded, a row longer than one of out by the filters' reach on both sides.
+    padded: the picture (h + 2 r, w + 2 r), with a border of the filter's reach r. offset: from a place of out to a
+    place of padded, in numbers of padded.
     """
     cdef Py_ssize_t i
     with nogil:
@@ -36,7 +40,10 @@ def respond(
 
 def strongest(const float[:, :, ::1] bank, float[:, ::1] most, float[:, ::1] mean, float[:, ::1] light_most,
               float[:, ::1] light_mean, Py_ssize_t top, Py_ssize_t bottom):
-    """The greatest of all directions' responses, and their mean, those below 0 being 0; of those below 0 the same."""
+    """Fill in rows top … bottom - 1 of most and mean (h, w): over the directions, of responses, those below 0 as 0.
+
+    light_most, light_mean: (h, w) the same of the responses below 0, with the sign changed.
+    """
     cdef Py_ssize_t i, q, k
     cdef Py_ssize_t n = bank.shape[0], w = bank.shape[2]
     cdef float v, u
@@ -64,7 +71,10 @@ def strongest(const float[:, :, ::1] bank, float[:, ::1] most, float[:, ::1] mea
 
 def weigh(float[:, :, ::1] bank, const float[:, ::1] factor, const float[:, ::1] less,
           const float[:, ::1] light_factor, const float[:, ::1] light_less, Py_ssize_t top, Py_ssize_t bottom):
-    """Responses times factor, less what is around, or 0; those below 0 by what is told of light ones."""
+    """Replace responses r of rows top … bottom - 1 by r · factor − less where r > 0, or by 0 if that is below 0.
+
+    Where r < 0, −r becomes −r · light_factor − light_less likewise. factor, less, light_factor, light_less: (h, w).
+    """
     cdef Py_ssize_t i, q, k
     cdef Py_ssize_t n = bank.shape[0], w = bank.shape[2]
     cdef float v, u

@@ -1,4 +1,4 @@
-/* A row of a picture through one filter: sums of taps that stay in registers, made for any processor and for AVX2.
+/* A row of a picture through one filter: sums over taps that stay in registers, compiled for any processor and for AVX2.
  *
  * Each place's sum is of its taps in order, so no byte depends on the vectors. */
 #ifndef PENINK_TAPS_H

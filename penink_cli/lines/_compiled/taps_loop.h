@@ -1,4 +1,4 @@
-/* The loop of `taps.h`, with VECTOR bytes to a vector; PART names what is made. */
+/* The loop of `taps.h`, with VECTOR bytes to a vector; PART makes the names. */
 
 typedef float PART(places) __attribute__((vector_size(VECTOR), aligned(4), may_alias));
 

@@ -1,45 +1,45 @@
 # cython: boundscheck=False, wraparound=False, cdivision=True
 """2-opt and Or-opt on a tour of strokes that may be drawn from either end.
 
-The open path is closed by one stroke more, number n, which is at no distance from anything; so
-its two ends are as free as everything else, and of every reversal the shorter side can be done.
-A stroke's ends are the points 2s (its start) and 2s + 1; flips[s] says it is drawn backwards.
+The open path is closed to a tour by one stroke more, number n, which is at distance 0 from everything.
+So the ends of the path are as free as all else, and of every reversal the shorter side can be done.
+A stroke's ends are the points 2s (its start) and 2s + 1; flips[s] says that it is drawn backwards.
 
      2-opt    … s │ b … t │ u …      becomes   … s  t … b  u …    (the middle drawn backwards)
      Or-opt   up to three strokes in a row move between two others, either way round.
 
 Candidates come from the nearest neighbours of each end, and a stroke is looked at again only
-when one of its links has changed. Where it ends is a count of steps, not a clock, so that the
+when one of its links has changed. A count of steps and not a clock ends the search, so that the
 bytes are the same on every machine.
 
-What it is worth (`python -m tests.benchmarks.worth tours`): 20 000 short strokes anywhere take .77 of the way that
-always the nearest next takes, 1000 take .79, for .3 s and .01 s of the processor. A plotter needs minutes for that way.
+What it is worth (`python -m tests.benchmarks.worth tours`): of 20 000 short strokes anywhere the tour is .77 of the way
+by the nearest next, of 1000 strokes .79, for .3 s and .01 s of the processor. A plotter needs minutes for such a way.
 """
 
 from libc.math cimport sqrt
 
-cdef int LONGEST = 50000  # no longer stretch is moved: it would cost more than it brings
-cdef int CHAIN = 3
-cdef double LEAST = 1e-7  # what a step must gain
+cdef int LONGEST = 50000  # strokes: moving a longer stretch would cost more than it brings
+cdef int CHAIN = 3  # strokes that Or-opt moves at the most
+cdef double LEAST = 1e-7  # points that a step must gain
 
-# What the steps below share. The ends of stroke s are 2s and 2s + 1; `last` is the first of the one closing the tour.
+# What the steps below share; see `improve` for the arrays.
 cdef struct Tour:
     const double* points
     const int* near
-    int neighbours
-    int n
-    int last
+    int neighbours  # of each end
+    int n  # strokes of the tour, with the one that closes it
+    int last  # the first end of the stroke that closes the tour
     int* order
     int* place
     unsigned char* flips
     int* queue
     unsigned char* waiting
-    int tail
-    long long budget
+    int tail  # where the queue's next place is
+    long long budget  # steps that are left
 
 
 cdef inline double _d(Tour* t, int a, int b) noexcept nogil:
-    """Distance between two ends; none where either belongs to the stroke that closes the tour."""
+    """Distance between two ends; 0 where either belongs to the stroke that closes the tour."""
     cdef double x, y
     if a >= t.last or b >= t.last:
         return 0.0
@@ -49,7 +49,7 @@ cdef inline double _d(Tour* t, int a, int b) noexcept nogil:
 
 
 cdef inline int _beside(Tour* t, int s, bint ahead) noexcept nogil:
-    """The stroke behind s in the tour, if `ahead`, or the one before it."""
+    """The stroke after s in the tour, if `ahead`, or the one before it."""
     cdef int i = t.place[s]
     if ahead:
         return t.order[i + 1 if i + 1 < t.n else 0]
@@ -57,17 +57,20 @@ cdef inline int _beside(Tour* t, int s, bint ahead) noexcept nogil:
 
 
 cdef inline int _end(Tour* t, int s, bint ahead) noexcept nogil:
-    """The end by which s is linked to the stroke behind it, if `ahead`, or to the one before it."""
+    """The end by which s is linked to the stroke after it, if `ahead`, or to the one before it."""
     return 2 * s + (t.flips[s] ^ ahead)
 
 
 cdef inline bint _as_good(Tour* t, int c, int wanted) noexcept nogil:
-    """Whether candidate c is the end wanted or, the stroke being a dot, as good as it."""
+    """Whether candidate c is the end wanted or lies in the same place, as both ends of a dot do."""
     return c == wanted or (t.points[2 * c] == t.points[2 * wanted] and t.points[2 * c + 1] == t.points[2 * wanted + 1])
 
 
 cdef int _reverse(int* tour, int* place, unsigned char* flips, int n, int i, int j) noexcept nogil:
-    """Draw places i … j (around the end, if j < i) backwards, or all others, whichever is less work."""
+    """Draw places i … j (around the end, if j < i) backwards, or all others, whichever is less work.
+
+    Returns the steps that it took, -1 where nothing was done because both stretches are too long.
+    """
     cdef int k, a, b
     cdef int length = j - i + 1 if j >= i else j - i + 1 + n
     if 2 * length > n:
@@ -95,10 +98,13 @@ cdef int _reverse(int* tour, int* place, unsigned char* flips, int n, int i, int
 cdef int _move(
     int* tour, int* place, unsigned char* flips, int n, int i, int length, int to, bint backwards
 ) noexcept nogil:
-    """Move the `length` strokes from place i on to behind the stroke at place `to`, which is not one of them."""
+    """Move the chain of `length` strokes from place i on to after the stroke at place `to`, which is not one of them.
+
+    Returns the steps that it took, -1 where nothing was done because both ways are too long.
+    """
     cdef int[8] chain
     cdef int k, stroke
-    # Strokes between the chain and its goal, going on; the others lie between going back.
+    # `ahead` strokes lie between the chain and its goal going on, `behind` strokes going back.
     cdef int behind, source
     cdef int ahead = to - (i + length - 1)
     if ahead < 0:
@@ -144,7 +150,7 @@ cdef int _move(
 
 
 cdef inline void _push(Tour* t, int s) noexcept nogil:
-    """Look at s again, last of all."""
+    """Put s at the end of the queue, if it is not in it."""
     if not t.waiting[s]:
         t.waiting[s] = 1
         t.queue[t.tail] = s
@@ -152,7 +158,7 @@ cdef inline void _push(Tour* t, int s) noexcept nogil:
 
 
 cdef bint _two_opt(Tour* t, int s, bint ahead) noexcept nogil:
-    """Replace the link of s to the stroke behind it (or before it) and one more link, if that is shorter."""
+    """Replace the link of s to the stroke after it (`ahead`) or before it, and one more link, if that is shorter."""
     cdef double gain
     cdef int c, i, k, goal, after, steps
     cdef int a = _end(t, s, ahead)
@@ -217,9 +223,9 @@ cdef bint _or_opt(Tour* t, int s, int e, int length) noexcept nogil:
             i = t.place[goal] - t.place[s]
             if i < 0:
                 i += t.n
-            if i < length:  # one of the chain's own
+            if i < length:  # a stroke of the chain itself
                 continue
-            ahead = c == _end(t, goal, True)  # in behind `goal`, else before it
+            ahead = c == _end(t, goal, True)  # the chain goes after `goal`, else before it
             other = _beside(t, goal, ahead)
             if other == (s if ahead else e):
                 continue
@@ -261,13 +267,15 @@ def improve(
     const double[:, ::1] points, const int[:, ::1] near, int[::1] tour, int[::1] place, unsigned char[::1] flips,
     int[::1] queue, unsigned char[::1] waiting, long long[::1] state, long long budget, long long stop,
 ) -> int:
-    """Shorten a closed tour in place until nothing helps, or no more than `stop` of the `budget` of steps is left.
+    """Shorten a closed tour in place until nothing helps, or until no more than `stop` of `budget` steps are left.
 
-    Returns the steps left. Called again with the same arrays, and what was left, it goes on as if it had not stopped.
+    Returns the steps left. Called again with the same arrays and that budget it goes on as if it had not stopped.
 
-    points (2n, 2), near (2n, k) indices of ends, nearest first, -1 for none.
-    tour, place, flips (n + 1,): with stroke n closing it. queue, waiting (n + 1,): the strokes to look at, in the order
-    of the tour at first, and 1 for each that is in the queue. state (3,): the queue's head and tail, strokes looked at.
+    points (2n, 2): the strokes' ends. near (2n, k): of each end its nearest ends, nearest first, -1 for none. tour (n +
+    1,): strokes in their order, n being the one that closes the tour; place (n + 1,) of each stroke in tour; flips (n +
+    1,): 1 for a stroke drawn backwards. queue (n + 1,): strokes to look at, at first in the order of the tour; waiting
+    (n + 1,): 1 for each stroke in the queue. state (3,): the queue's head and tail, and how many strokes were looked
+    at.
     """
     cdef Tour t
     cdef int s

@@ -1,14 +1,13 @@
 # cython: boundscheck=False, wraparound=False, cdivision=True
 """Nearest neighbours among stroke ends: a tree of boxes over points sorted along a Morton curve.
 
-A plain grid is a little faster on even drawings and quadratic on clustered ones; the tree is
-not impressed by clusters. Points can be taken away, and a box that holds none any more is
-passed by.
+A plain grid is a little faster on even drawings, but quadratic on clustered ones; the tree does not
+depend on clusters. Points can be taken away, and a box that holds no more points is passed by.
 
-A tree is four arrays: `sorted_points` (m, 2), which stand beside each other as they are looked at
-together; `order` (m,), the end that each is (stroke s has ends 2s and 2s + 1); `boxes` and `alive`.
-Node 1 is the root, the children of i are 2i and 2i + 1, and node `leaves` + j holds the points
-LEAF·j … LEAF·j + LEAF − 1 of the sorted order.
+A tree is four arrays: `sorted_points` (m, 2), in which points that are looked at together lie together;
+`order` (m,), the end that each point is (stroke s has ends 2s and 2s + 1); `boxes` (2·leaves, 4), x0, y0,
+x1, y1 of each node; `alive` (2·leaves,), how many points of each node are left. Node 1 is the root, the
+children of i are 2i and 2i + 1, and node `leaves` + j holds the points LEAF·j … LEAF·j + LEAF − 1.
 """
 
 LEAF = 8
@@ -16,7 +15,7 @@ cdef int _LEAF = LEAF
 
 
 def build(const double[:, ::1] sorted_points, double[:, ::1] boxes, int[::1] alive) -> None:
-    """Fill boxes (2·leaves, 4) as x0, y0, x1, y1 and alive (2·leaves,), the number of points in each node."""
+    """Fill boxes and alive of a tree over the points."""
     cdef Py_ssize_t node, k
     cdef Py_ssize_t leaves = alive.shape[0] // 2
     cdef Py_ssize_t count = sorted_points.shape[0]
@@ -53,7 +52,11 @@ cdef int _nearest(
     const double[:, ::1] sorted_points, const int[::1] order, double[:, ::1] boxes, int[::1] alive,
     unsigned char[::1] used, double x, double y, int most, int* found, double* distances, int but,
 ) noexcept nogil:
-    """The `most` nearest points that are not used, nearest first; ends of stroke `but` are left out."""
+    """Find the `most` ends nearest to (x, y) of strokes that are not used, without those of stroke `but`.
+
+    found, distances: room for `most` ends, nearest first, and the squares of their distances. Returns how many there
+    are.
+    """
     cdef Py_ssize_t[64] stack
     cdef double[64] bound
     cdef Py_ssize_t k, node, near, far
@@ -110,10 +113,11 @@ def greedy(
     double[:, ::1] boxes, int[::1] alive, double[::1] pen, int[::1] tour, unsigned char[::1] flips,
     unsigned char[::1] used,
 ) -> None:
-    """From `pen` (x, y) always on to the nearest end of a stroke not yet used, which is drawn from there.
+    """Go from `pen` (x, y) always on to the nearest end of a stroke not yet used, and draw the stroke from there.
 
-    points (2n, 2): start and end of each stroke. place (2n,): where each stands in `order`, or -1.
-    Fills all of tour; flips (n,) is 1 where a stroke is drawn from its end; pen moves on.
+    points (2n, 2): start and end of each stroke. place (2n,): where each end stands in `order`, or -1. tour: filled
+    with strokes, of which there must be so many left. flips (n,): set to 1 where a stroke is drawn from its end. used
+    (n,): set for each stroke drawn. pen: where the pen is left.
     """
     cdef Py_ssize_t i, node
     cdef int end, stroke
@@ -146,10 +150,10 @@ def greedy_few(
     const double[:, ::1] points, const int[::1] order, const long long[::1] first, const long long[::1] begins,
     int[::1] tour, unsigned char[::1] flips, unsigned char[::1] used,
 ) -> None:
-    """As `greedy`, for many groups of few strokes: each from the corner (0, 0), and with no tree.
+    """As `greedy`, for many groups of few strokes: each group begins at the corner (0, 0), and there is no tree.
 
-    points (2n, 2): of all groups. order: ends, group after group; group g has order[first[g]] … order[first[g + 1] - 1]
-    and fills tour from begins[g] on, to begins[g + 1].
+    points (2n, 2): ends of all groups. order: ends, group after group; those of group g are order[first[g]] …
+    order[first[g + 1] - 1], and its strokes fill tour[begins[g]] … tour[begins[g + 1] - 1].
     """
     cdef Py_ssize_t g, i, k
     cdef double x, y, dx, dy, d, nearest
@@ -188,7 +192,7 @@ def neighbours(
     if most > 32:
         raise ValueError("at most 32 neighbours")
     with nogil:
-        for i in range(order.shape[0]):  # along the curve, so that what is looked at is still at hand
+        for i in range(order.shape[0]):  # along the Morton curve, so that the nodes looked at are still in the cache
             end = order[i]
             n = _nearest(
                 sorted_points, order, boxes, alive, used, sorted_points[i, 0], sorted_points[i, 1], most,
