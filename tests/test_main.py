@@ -70,6 +70,11 @@ def test_version(penink):
         (["separate", "--grey", "0_1,1"], "is not a range of grey"),
         (["separate", "--point", "7"], "'7' is not a point such as"),
         (["completion"], "Choose from: bash, zsh, fish (see"),
+        (["blast", "--width", "1in", "--layer", "a\udcff"], "'--layer': 'a\\udcff' is not UTF-8"),
+        (["texture", "make", "fur", "--name", "\udcff"], "'--name': '\\udcff' is not UTF-8"),
+        (["texture", "import", "--name", "\udcff"], "'--name': '\\udcff' is not UTF-8"),
+        (["to-html", "--title", "\udcff"], "'--title': '\\udcff' is not UTF-8"),
+        (["to-pdf", "--author", "\udcff"], "'--author': '\\udcff' is not UTF-8"),
     ],
 )
 def test_wrong_usage_is_one_line_and_status_2(arguments, complaint, penink):

@@ -13,7 +13,7 @@ from penink_cli.chain.kept import Kept
 from penink_cli.chain.plates import Plate, plates
 from penink_cli.chain.request import Request
 from penink_cli.options.common import reporter
-from penink_cli.options.inputs import photo_words, read_colours
+from penink_cli.options.photographs import photo_words, read_colours
 from penink_cli.options.progress import progress
 from penink_cli.options.sheet import check_sheet
 from penink_cli.outputs.registry import of_illustrations, on_screen

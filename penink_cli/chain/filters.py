@@ -143,7 +143,7 @@ def found(filter_name: str) -> click.Command:
 @contextmanager
 def bench() -> Iterator[dict[str, bytes]]:
     """A workbench, on which photographs are remembered too, and nothing is warned of twice."""
-    from penink_cli.options.inputs import remembering_photos
+    from penink_cli.options.remembered import remembering_inputs
 
-    with streams.workbench({}) as files, remembering_photos(), warning_once():
+    with streams.workbench({}) as files, remembering_inputs(), warning_once():
         yield files

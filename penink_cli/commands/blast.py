@@ -12,6 +12,7 @@ from penink_cli.ground.streams import writing
 from penink_cli.options.common import (
     LENGTH,
     POSITIVE,
+    TEXT,
     Finite,
     edges_option,
     filter_options,
@@ -120,7 +121,7 @@ if TYPE_CHECKING:
     help="Fill what is at least so dark, where the texture reaches black: .985 for a plate.  [default: .93 or .97]",
 )
 @click.option("--color", "--colour", "colour", type=COLOUR, metavar="COLOUR", help="The ink, as the result is to say.")
-@click.option("--layer", "layer_name", metavar="NAME", help="The layer's name, as the result is to say.")
+@click.option("--layer", "layer_name", type=TEXT, metavar="NAME", help="The layer's name, as the result is to say.")
 @threads_option
 @verbose_option
 @filter_options

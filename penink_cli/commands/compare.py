@@ -9,8 +9,9 @@ import click
 
 from penink_cli.ground.streams import source_name, writing
 from penink_cli.options.common import Finite, output_options, processors, threads_option
-from penink_cli.options.inputs import only_one_standard_input, photo_options, read_image_or_strokes
+from penink_cli.options.inputs import only_one_standard_input
 from penink_cli.options.layers import as_printed, gain_option
+from penink_cli.options.photographs import photo_options, read_image_or_strokes
 
 PLACE_PT, PLACE_PX = 0.1, 1
 

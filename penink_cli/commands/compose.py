@@ -18,7 +18,8 @@ from penink_cli.options.common import (
     warn,
 )
 from penink_cli.options.composition import composition_options
-from penink_cli.options.inputs import only_one_standard_input, photo_options, read_colours, read_photo
+from penink_cli.options.inputs import only_one_standard_input
+from penink_cli.options.photographs import photo_options, read_colours, read_photo
 from penink_cli.options.sheet import check_sheet
 
 

@@ -10,13 +10,12 @@ from penink_cli.ground.streams import writing
 from penink_cli.options.common import Finite, edges_option, filter_options
 from penink_cli.options.inputs import (
     only_one_standard_input,
-    photo_options,
-    read_colours,
     read_edges,
     read_lines,
     read_strokes_or_svg,
     warn_of_another_shape,
 )
+from penink_cli.options.photographs import photo_options, read_colours
 
 
 @click.command(name="detect-directions")

@@ -8,7 +8,7 @@ import click
 
 from penink_cli.ground.streams import writing
 from penink_cli.options.common import LENGTH, POSITIVE, Finite, filter_options, reporter, verbose_option
-from penink_cli.options.inputs import photo_options, read_photo
+from penink_cli.options.photographs import photo_options, read_photo
 
 STEP = Finite(most=1, above=0)
 

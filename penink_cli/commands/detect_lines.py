@@ -18,7 +18,8 @@ from penink_cli.options.common import (
     threads_option,
     verbose_option,
 )
-from penink_cli.options.inputs import only_one_standard_input, photo_options, read_directions, read_photo
+from penink_cli.options.inputs import only_one_standard_input, read_directions
+from penink_cli.options.photographs import photo_options, read_photo
 
 if TYPE_CHECKING:
     from penink_cli.ground.model import Directions

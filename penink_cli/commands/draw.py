@@ -19,8 +19,9 @@ from penink_cli.ground.errors import in_quotes
 from penink_cli.options.common import LENGTH, DeviceDpi, Finite, output_options, threads_option, verbose_option
 from penink_cli.options.composition import composition_options
 from penink_cli.options.inks import Inks, inks_option
-from penink_cli.options.inputs import only_one_standard_input, photo_options
+from penink_cli.options.inputs import only_one_standard_input
 from penink_cli.options.layers import colour_option, page_options
+from penink_cli.options.photographs import photo_options
 from penink_cli.options.styles import STYLE
 from penink_cli.options.textures import TEXTURE
 from penink_cli.outputs.registry import STROKES, endings, on_screen

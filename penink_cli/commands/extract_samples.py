@@ -6,13 +6,8 @@ import click
 
 from penink_cli.ground.streams import writing
 from penink_cli.options.common import Finite, edges_option, filter_options, reporter, verbose_option
-from penink_cli.options.inputs import (
-    only_one_standard_input,
-    photo_options,
-    read_edges,
-    read_photo,
-    warn_of_another_shape,
-)
+from penink_cli.options.inputs import only_one_standard_input, read_edges, warn_of_another_shape
+from penink_cli.options.photographs import photo_options, read_photo
 
 
 @click.command(name="extract-samples")

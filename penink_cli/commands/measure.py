@@ -8,8 +8,9 @@ import click
 
 from penink_cli.ground.streams import writing
 from penink_cli.options.common import Finite, output_options, processors, threads_option
-from penink_cli.options.inputs import only_one_standard_input, photo_options, read_image_or_strokes
+from penink_cli.options.inputs import only_one_standard_input
 from penink_cli.options.layers import as_printed, files_argument, gain_option, read_layers
+from penink_cli.options.photographs import photo_options, read_image_or_strokes
 
 if TYPE_CHECKING:
     from penink_cli.measuring.lines import LineFigures

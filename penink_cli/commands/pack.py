@@ -8,7 +8,7 @@ import click
 
 from penink_cli.ground.streams import writing
 from penink_cli.options.common import LENGTH, filter_options, threads_option
-from penink_cli.options.inputs import read_illustration, settled
+from penink_cli.options.illustrations import read_illustration, settled
 
 
 @click.command()

@@ -15,15 +15,8 @@ from penink_cli.options.common import (
     threads_option,
     verbose_option,
 )
-from penink_cli.options.inputs import (
-    only_one_standard_input,
-    photo_limit,
-    photo_options,
-    read_edges,
-    read_grey,
-    read_photo,
-    warn_of_another_shape,
-)
+from penink_cli.options.inputs import only_one_standard_input, read_edges, read_grey, warn_of_another_shape
+from penink_cli.options.photographs import photo_limit, photo_options, read_photo
 
 
 @click.command(name="reduce")

@@ -10,7 +10,7 @@ import click
 from penink_cli.ground.errors import ParameterError, printable
 from penink_cli.ground.streams import writing
 from penink_cli.options.common import LENGTH, POSITIVE, filter_options, printer_option, processors, threads_option
-from penink_cli.options.inputs import read_illustration
+from penink_cli.options.illustrations import read_illustration
 from penink_cli.options.sheet import check_sheet
 
 if TYPE_CHECKING:

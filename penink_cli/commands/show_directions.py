@@ -6,14 +6,8 @@ import click
 
 from penink_cli.ground.streams import writing
 from penink_cli.options.common import POSITIVE, directions_option, edges_option, filter_options
-from penink_cli.options.inputs import (
-    only_one_standard_input,
-    photo_options,
-    read_directions,
-    read_edges,
-    read_photo,
-    warn_of_another_shape,
-)
+from penink_cli.options.inputs import only_one_standard_input, read_directions, read_edges, warn_of_another_shape
+from penink_cli.options.photographs import photo_options, read_photo
 
 
 @click.command(name="show-directions")

@@ -9,7 +9,7 @@ import click
 
 from penink_cli.ground.errors import ParameterError
 from penink_cli.ground.streams import reading, source_name, writing
-from penink_cli.options.common import LENGTH, DeviceDpi, Finite, Length, output_options, warn
+from penink_cli.options.common import LENGTH, TEXT, DeviceDpi, Finite, Length, output_options, warn
 from penink_cli.options.textures import TEXTURE, find_texture, shipped
 from penink_cli.textures.registry import KINDS
 
@@ -117,7 +117,7 @@ def show(name: str, as_file: bool, device_dpi: float | None, output: str | None,
 )
 @click.option("--layers", type=click.IntRange(1, 4), metavar="1…4", help="Directions of hatching.")
 @click.option("--seed", type=click.IntRange(0, 2**63 - 1), metavar="N", help="Another hand.")
-@click.option("--name", help="The texture's name.  [default: KIND]")
+@click.option("--name", type=TEXT, help="The texture's name.  [default: KIND]")
 @output_options
 def make(
     kind: str,
@@ -153,9 +153,15 @@ def make(
         texture_format.write(out, made)
 
 
+def _title(source: str) -> str:
+    """The name of a texture by that of its file, which need not be UTF-8."""
+    name = source.rsplit("/", 1)[-1].removesuffix(".svg")
+    return name.encode("utf-8", "replace").decode("utf-8")
+
+
 @texture.command(name="import")
 @click.argument("file", required=False, metavar="[SVG]", type=click.Path(allow_dash=True))
-@click.option("--name", help="The texture's name.  [default: the file's]")
+@click.option("--name", type=TEXT, help="The texture's name.  [default: the file's]")
 @click.option("--pen", type=LENGTH, help="Width of all strokes.  [default: each path's stroke-width]")
 @click.option("--whole", is_flag=True, help="Strokes are drawn whole or not at all.")
 @click.option("--oriented", is_flag=True, help="A set of examples, each path from left to right along the form.")
@@ -178,7 +184,7 @@ def import_svg(
 
     source = source_name(file)
     with reading(file) as stream:
-        title = name or (source.rsplit("/", 1)[-1].removesuffix(".svg") if file and file != "-" else "imported")
+        title = name or (_title(source) if file and file != "-" else "imported")
         drawing = svg_texture.read(stream, source, title, pen, whole, lambda line: warn(f"{source}: {line}"))
     if oriented:
         from penink_cli.textures.sets import as_set

@@ -14,13 +14,8 @@ from penink_cli.options.common import (
     threads_option,
     verbose_option,
 )
-from penink_cli.options.inputs import (
-    only_one_standard_input,
-    photo_options,
-    read_edges,
-    read_photo,
-    warn_of_another_shape,
-)
+from penink_cli.options.inputs import only_one_standard_input, read_edges, warn_of_another_shape
+from penink_cli.options.photographs import photo_options, read_photo
 
 
 @click.command(name="thin-edges")

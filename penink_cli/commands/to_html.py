@@ -7,13 +7,13 @@ from typing import Any
 import click
 
 from penink_cli.ground.streams import writing
-from penink_cli.options.common import filter_options
-from penink_cli.options.inputs import read_illustration
+from penink_cli.options.common import TEXT, filter_options
+from penink_cli.options.illustrations import read_illustration
 
 
 @click.command(name="to-html")
 @filter_options
-@click.option("--title", default="Illustration", show_default=True, help="Of the page.")
+@click.option("--title", type=TEXT, default="Illustration", show_default=True, help="Of the page.")
 @click.option("--reload", is_flag=True, help="The page loads itself anew whenever its file has changed.")
 @click.option("--readable", is_flag=True, help="Keep the program's comments and layout.")
 def to_html(

@@ -8,7 +8,7 @@ from typing import Any
 import click
 
 from penink_cli.ground.streams import writing
-from penink_cli.options.common import Finite, Length, output_options
+from penink_cli.options.common import TEXT, Finite, Length, output_options
 from penink_cli.options.layers import (
     as_printed,
     colour_option,
@@ -59,7 +59,7 @@ def _decorator(option: Option) -> Any:
         return click.option(word, option.name, is_flag=True, help=option.help)
     kind: click.ParamType = Finite(option.least, option.most)
     if option.default == "":
-        return click.option(word, option.name, default="", metavar="TEXT", help=option.help)
+        return click.option(word, option.name, type=TEXT, default="", metavar="TEXT", help=option.help)
     if option.choices:
         kind = click.Choice(option.choices)
     elif option.length:

@@ -107,7 +107,7 @@ def _refuse_what_is_ignored(self_drawing: bool) -> None:
 def write_self_drawing(files: tuple[str, ...], output: str | None, packing: str, max_pixels: int) -> None:
     """The illustration in the one file given as an EPS that draws itself."""
     from penink_cli.options.common import warn
-    from penink_cli.options.inputs import read_illustration
+    from penink_cli.options.illustrations import read_illustration
     from penink_cli.selfdrawing import postscript as selfdrawing
     from penink_cli.selfdrawing.data import follows
 

@@ -1,8 +1,8 @@
 """One file of several members: ``*.penink``, a ZIP archive that is the same bytes for the same members.
 
-Members are stored, in order, with the attributes of 1980. What deserves compression comes compressed
-by `compact`: a deflate library promises the same text back, but not the same bytes from one
-version to the next. Deflated members are read all the same, so that people can zip what they unzipped.
+Members are stored, in order, dated 1980-01-01, with mode 0644. `compact` has compressed them already: a deflate library
+promises the same text back, but not the same bytes from one version to the next. Deflated members are read all the
+same, so that people can zip what they unzipped.
 """
 
 from __future__ import annotations
@@ -27,8 +27,8 @@ _NAME = re.compile(r"[A-Za-z0-9_-][A-Za-z0-9._-]{0,99}", re.ASCII)
 def read(data: bytes, source: str) -> dict[str, bytes]:
     """Members by name.
 
-    Raises FormatError for what is no whole archive or holds what an archive of ours never does
-    (folders, paths, links, a name twice, encryption), LimitError for one that is or unpacks too large.
+    Raises FormatError for what is no whole archive or holds what `pack` never writes (folders, paths, links, a name
+    twice, encryption), LimitError for more than MAX_BYTES, packed or unpacked, and for more than MAX_MEMBERS.
     """
     if len(data) > MAX_BYTES:
         raise LimitError(f"an archive of more than {MAX_BYTES} bytes", source)
@@ -53,7 +53,7 @@ def read(data: bytes, source: str) -> dict[str, bytes]:
 
 
 def _check(members: list[zipfile.ZipInfo]) -> None:
-    """Refuse what is not a plain, small, readable file of its own name."""
+    """Raise FormatError for a member that is no plain file of its own name, LimitError for too many bytes in all."""
     names: set[str] = set()
     for info in members:
         name = printable(info.orig_filename, 60)
@@ -75,7 +75,7 @@ def _check(members: list[zipfile.ZipInfo]) -> None:
 
 
 def _content(archive: zipfile.ZipFile, info: zipfile.ZipInfo) -> bytes:
-    """A member's bytes, no more of them than it declares and all of those."""
+    """A member's bytes. Raises FormatError where there are fewer or more than it declares."""
     with archive.open(info) as stream:
         content = stream.read(info.file_size + 1)
     if len(content) != info.file_size:

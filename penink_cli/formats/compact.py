@@ -1,21 +1,21 @@
-"""Samples, directions and texts in as few bytes as they can be: members of a packed illustration.
+"""Samples, directions and texts in few bytes: members of a packed illustration.
 
-Each is what `members` says: four bytes, whole numbers (seven bits a byte, low ones first, the eighth set on all but
-the last), then one stretch of the adaptive code of `_compiled/coder`:
+Each begins as `members` says: four bytes, whole numbers (seven bits a byte, low ones first, the eighth set on all but
+the last). One stretch of the adaptive code of `_compiled/coder` follows:
 
 =========  =========================================  ==========================================
 ``PIs1``   width, height, maxval                      samples, row by row, by their neighbours
 ``PIs2``   width, height, maxval                      the same, by neighbours that no edge hides
-``PIs3``   width, height, maxval, 1 beside edges      the same, weighed as served those around best
+``PIs3``   width, height, maxval, 1 beside edges      the same, by weights fitted to the samples around
 ``PId2``   columns, rows                              directions: angles row by row, then confidence
 ``PIt1``   number of bytes                            a text, byte by byte
 =========  =========================================  ==========================================
 
-`compact_edges` and `compact_lines` have two more; `parts` is how an archive holds them all. Samples beside edges are
-read with the same edges that they were written with: which neighbours tell something of a sample is not said again.
+`compact_edges` and `compact_lines` have edges and telling lines; `parts` is how an archive holds all of them. Samples
+beside edges must be read with the edges that they were written with: these say which neighbours tell of a sample.
 
-Directions are kept as ANGLES angles of a half turn, 5.625° apart (in ``PId1``, which is read, ANGLES_1),
-and as confidence in sevenths, one for 4 × 4 samples.
+Directions are kept as one of ANGLES angles of a half turn, 5.625° apart, and as confidence in sevenths, one for 4 × 4
+samples. ``PId1``, which is read and no longer written, has ANGLES_1 angles.
 """
 
 from __future__ import annotations
@@ -40,18 +40,19 @@ DIRECTIONS, DIRECTIONS_1 = b"PId2", b"PId1"
 
 ANGLES, ANGLES_1 = 32, 48  # of a half turn: 0°, 45° and 90° are among them
 SURE = 7  # the highest level of confidence
-BLOCK = 4  # samples along a side that share one
+BLOCK = 4  # samples along each side of a square that share one confidence
 MAX_FIELD = 1 << 20  # samples of a direction field
-# Decoding takes .04 µs a sample where all is paper (up to 2 where it is fitted, of which there are fewer), .3 µs a byte
-# of text and up to 3 µs a byte of code: with these limits and `members.MAX_CODE` 3 seconds a member at the most.
+# Decoding takes .04 µs a sample where all is paper, up to 2 µs a fitted sample, .3 µs a byte of text and up to 3 µs a
+# byte of code. With these limits, FITTED_SAMPLES and `members.MAX_CODE` that is 3 seconds a member at the most.
 MAX_SAMPLES = 1 << 24
 MAX_TEXT = 1 << 20
 
-_SPACING = 16  # of samples, in the whole numbers by which it is told what an edge hides
-# Edges that pass more cells than so many a sample, and some, hide nothing: telling what they do would take too long.
+_SPACING = 16  # of samples, in the whole numbers of `cuts`
+# Edges that pass more than _PASSED cells a sample, and _SOME besides, are taken to hide nothing: finding what they hide
+# would take too long.
 _PASSED, _SOME = 4, 1 << 16
 
-_TURN = 8  # the kind of number that a turn is: each kind has statistics of its own
+_TURN = 8  # the kind of number (see `Coder.number`) that a turn is
 
 
 def requantised(image: GreyImage, levels: int) -> GreyImage:
@@ -71,7 +72,7 @@ def _grey(values: npt.NDArray[Any], maxval: int) -> GreyImage:
 
 
 def samples_bytes(image: GreyImage, edges: EdgeList | None = None) -> bytes:
-    """Samples, without loss, beside edges in the same frame. Raises LimitError."""
+    """Samples without loss, beside edges in the same frame if there are any. Raises LimitError."""
     h, w = image.values.shape
     coder = Coder()
     beside = edges is not None and len(edges.edges) > 0
@@ -110,7 +111,7 @@ def samples_from(data: bytes, max_pixels: int, edges: EdgeList | None = None) ->
 
 
 def _hidden(edges: EdgeList | None, width: int, height: int) -> npt.NDArray[np.uint8]:
-    """(height, width) bits of the neighbours that edges hide from a sample."""
+    """(height, width) bits of the neighbours that edges hide from each sample, as `cuts.mark` has them."""
     cuts = np.zeros((height, width), np.uint8)
     if edges is not None and len(edges.edges):
         scale = (_SPACING * width / edges.width, _SPACING * height / edges.height)
@@ -126,7 +127,7 @@ def _hidden(edges: EdgeList | None, width: int, height: int) -> npt.NDArray[np.u
 
 
 def text_bytes(text: bytes) -> bytes:
-    """Any bytes, best those of a text. Raises LimitError."""
+    """A text as a compact member; any bytes are taken. Raises LimitError."""
     if len(text) > MAX_TEXT:
         raise LimitError(f"a text of {len(text)} bytes; {MAX_TEXT} are allowed")
     coder = Coder()
@@ -150,18 +151,18 @@ def text_from(data: bytes) -> bytes:
 
 
 def _angles(count: int) -> Floats:
-    """(count, 2) the double-angle vectors of the angles that are kept."""
+    """(count, 2) cos 2θ and sin 2θ of the angles that are kept."""
     double = [2 * math.pi * k / count for k in range(count)]
     return np.array([(round(math.cos(a), 12), round(math.sin(a), 12)) for a in double])
 
 
 def directions_bytes(field: Directions) -> bytes:
-    """A direction field, each sample at the nearest of the angles and levels that are kept. Raises LimitError."""
+    """A direction field, its angles and its confidence rounded to those that are kept. Raises LimitError."""
     rows, columns = field.cos2.shape
     _check_field(columns, rows)
     angles = _angles(ANGLES)
     nearest = np.empty((rows, columns), np.int64)
-    for i in range(rows):  # where nothing is known, both 0, it is the first angle
+    for i in range(rows):  # where cos 2θ and sin 2θ are both 0 it is the first angle
         nearest[i] = np.argmax(field.cos2[i, :, None] * angles[:, 0] + field.sin2[i, :, None] * angles[:, 1], axis=1)
     coder = Coder()
     _code_angles(coder, nearest, ANGLES)
@@ -196,7 +197,7 @@ def _check_field(columns: int, rows: int) -> None:
 
 
 def _by_blocks(confidence: npt.NDArray[np.floating]) -> npt.NDArray[np.int32]:
-    """Levels of confidence, the mean of a block each; at least one above 0."""
+    """(rows, columns) levels of confidence, 0 … SURE, the mean of each block; at least one is above 0."""
     h, w = confidence.shape
     whole = np.pad(confidence.astype(np.float64), ((0, -h % BLOCK), (0, -w % BLOCK)), mode="edge")
     mean = np.zeros((len(whole) // BLOCK, whole.shape[1] // BLOCK))
@@ -210,9 +211,12 @@ def _by_blocks(confidence: npt.NDArray[np.floating]) -> npt.NDArray[np.int32]:
 
 
 def _code_angles(coder: Coder, nearest: Ints, count: int) -> None:
-    """Angles (h, w), 0 … count − 1, row by row, each as its turn from what its neighbours let expect; in place."""
+    """Code angles (h, w), 0 … count − 1, row by row, each as its turn from the one that its neighbours let expect.
+
+    The angles are written, or read in place.
+    """
     h, w = nearest.shape
-    turns = np.zeros((2, w + 2), np.int64).tolist()  # of this row and the last, how large they were
+    turns = np.zeros((2, w + 2), np.int64).tolist()  # the sizes of the turns of this row and the last
     above: list[int] = [0] * (w + 2)
     for i in range(h):
         given, row = nearest[i].tolist(), [0] * (w + 2)
@@ -221,7 +225,7 @@ def _code_angles(coder: Coder, nearest: Ints, count: int) -> None:
         for j in range(w):
             if coder.overrun:
                 return
-            # The neighbours are told by their turns from the west one, so that the half turn is no seam.
+            # The other neighbours are taken by their turns from the west one, so that the half turn is no seam.
             west = row[j] if j else ahead
             north = west + _turn(above[j + 1] - west, count) if i else west
             north_west = west + _turn(above[j] - west, count) if i and j else north
@@ -238,15 +242,15 @@ def _code_angles(coder: Coder, nearest: Ints, count: int) -> None:
 
 
 def _turn(steps: int, count: int) -> int:
-    """The same turn between −count / 2 and count / 2."""
+    """A turn of so many steps, brought between −count / 2 and count / 2."""
     return (steps + count // 2) % count - count // 2
 
 
 def _size(value: int) -> int:
-    """0 … 11, finer for small numbers."""
+    """The class of a size, 0 … 11, finer for small sizes."""
     return value if value < 6 else min(11, 6 + (value - 6) // 4)
 
 
 def _within_3(value: int) -> int:
-    """0 … 6."""
+    """The value, within ±3, counted from 0: 0 … 6."""
     return max(-3, min(3, value)) + 3

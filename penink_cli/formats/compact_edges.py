@@ -1,13 +1,13 @@
-"""Edges in as few bytes as they can be: a member of a packed illustration, ``PIe2`` (see `compact`).
+"""Edges in few bytes: a member of a packed illustration, ``PIe2`` (see `compact`).
 
 Whole numbers: frame W, H; grid columns, rows; number of edges; 1 where strengths follow, else 0. Then code: chains,
-each where it starts, then one step after the other; then the strengths of all chains, one for each stretch between
-junctions. ``PIe1``, which had one for each edge, is read.
+each by its start and then step by step; then the strengths of all chains, one for each stretch between junctions.
+``PIe1``, which has a strength for each edge, is read and no longer written.
 
 Vertices lie on a grid of columns × rows cells that spans the edge list's frame W × H: the point (a, b) is
-x = a·W / columns, y = b·H / rows. The grid has 16, 8 or 4 points to the sample spacing, as few as keep a step
-within FINEST of a pixel of the photo: precision follows the photo, which is what edges were found in. At 16 it costs
-at most 0.1 dB against exact edges. Strengths are kept in sixteenths.
+x = a·W / columns, y = b·H / rows. The grid has 4, 8 or 16 points to the sample spacing, the fewest whose step is at
+most COARSEST pixels of the photo: edges were found in the photo, and are no more exact than its pixels. With 16 points
+the grid costs at most 0.1 dB against exact edges. Strengths are kept in sixteenths.
 """
 
 from __future__ import annotations
@@ -26,24 +26,24 @@ from penink_cli.ground.model import EdgeList, Ints
 
 EDGES, EDGES_1 = b"PIe2", b"PIe1"
 GRIDS = (4, 8, 16)  # points of the grid to the sample spacing
-FINEST = 0.4  # pixels of the photo that a step of a grid need not be less than
+COARSEST = 0.4  # step of a grid, in pixels of the photo, wherever one of GRIDS is so fine
 STRENGTHS = 16  # steps of strength
 
-# Kinds of numbers; each has statistics of its own.
+# Kinds of numbers (see `Coder.number`).
 _CHAIN, _DOWN, _ALONG, _STEP, _BACK, _MAIN, _ASIDE, _STRENGTH = range(8)
 # What a step along a chain leads to.
 _NEW, _END, _START, _OLD = range(4)
-_MOST_OF_A_STRETCH = 20  # edges of it that its strength may depend on
+_MOST_OF_A_STRETCH = 20  # edges: longer stretches have the statistics of this length
 
 
 def points_to_spacing(edges: EdgeList, columns: int, rows: int) -> int:
-    """The grid, of GRIDS, that edges are to be moved to beside samples of columns × rows."""
+    """How many points to the sample spacing, of GRIDS, the grid of edges has beside samples of columns × rows."""
     spacing = max(edges.width / columns, edges.height / rows)
-    return next((points for points in GRIDS if spacing <= FINEST * points), GRIDS[-1])
+    return next((points for points in GRIDS if spacing <= COARSEST * points), GRIDS[-1])
 
 
 def on_grid(edges: EdgeList, columns: int, rows: int) -> int | None:
-    """The coarsest of GRIDS that all vertices lie on beside samples of columns × rows; None where they lie on none."""
+    """The coarsest of GRIDS, beside samples of columns × rows, on which all vertices lie; None for no such grid."""
     for points in GRIDS:
         at = edges.vertices * (points * columns / edges.width, points * rows / edges.height)
         if (np.abs(at - np.rint(at)) < 1e-6).all():
@@ -52,9 +52,9 @@ def on_grid(edges: EdgeList, columns: int, rows: int) -> int | None:
 
 
 def edges_bytes(edges: EdgeList, columns: int, rows: int) -> bytes:
-    """Edges whose vertices lie on a grid of columns × rows cells, in an order that depends on nothing but them.
+    """Edges, their vertices rounded to a grid of columns × rows cells; the order is that of `trails`.
 
-    Strengths become one for each stretch between junctions, the mean by length, in sixteenths. Raises LimitError.
+    The edges of a stretch between junctions share one strength, their mean by length, in sixteenths. Raises LimitError.
     """
     grid = np.rint(edges.vertices * (columns / edges.width, rows / edges.height)).astype(np.int64)
     strong = edges.strength is not None
@@ -108,7 +108,7 @@ def edges_from(data: bytes) -> EdgeList:
 
 
 def _stretches(found: list[list[int]]) -> list[tuple[int, int, int]]:
-    """The stretches of trails (of vertices) between junctions: trail, its first edge, one past its last."""
+    """The stretches between junctions of trails of vertices: number of the trail, its first edge, one past its last."""
     degree: dict[int, int] = {}
     for trail in found:
         for a, b in pairwise(trail):
@@ -125,7 +125,7 @@ def _stretches(found: list[list[int]]) -> list[tuple[int, int, int]]:
 
 
 def _code_strengths(coder: Coder, found: list[list[int]], means: list[int]) -> None:
-    """One strength a stretch, given (to write) or not (to read, in place)."""
+    """Code one strength a stretch, 0 … STRENGTHS: they are written, or read in place. Raises FormatError."""
     for k, (_, begin, end) in enumerate(_stretches(found)):
         if coder.overrun:
             return
@@ -137,22 +137,23 @@ def _code_strengths(coder: Coder, found: list[list[int]], means: list[int]) -> N
 class _Chains:
     """Edges as chains of steps from grid point to grid point.
 
-    A chain starts at a new point, told by its offset from the start before it, or at an old one. Each
-    step is expected to go on in the direction of the one before: its longer coordinate is
-    written first, then how far the other is from where that direction would have it.
+    A chain starts at an old point, or at a new one, which is coded by its offset from the last new start. Each step is
+    expected in the direction of the one before. Its coordinate along the longer side of that one is coded first, then
+    how far the other coordinate is from where the direction has it.
+
+    read: fills points, the (a, b) of each vertex; trails of vertices; ends, the vertices of each edge; strengths.
     """
 
     def __init__(self, coder: Coder, each: bool = False):
-        """each: whether a strength follows each step, as in the first version."""
+        """each: whether a strength follows each step, as in ``PIe1``."""
         self.coder, self.each = coder, each
-        # what is read
         self.points: list[tuple[int, int]] = []
         self.trails: list[list[int]] = []
         self.ends: list[tuple[int, int]] = []
         self.strengths: list[int] = []
 
     def _step(self, dx: int, dy: int, before: tuple[int, int]) -> tuple[int, int]:
-        """One step, given (to write) or not (to read), and the step before it, (0, 0) at the start of a chain."""
+        """Code a step (dx, dy); when it is read, whatever is given is ignored. before: (0, 0) at a chain's start."""
         bx, by = before
         swap = abs(by) > abs(bx)
         if swap:
@@ -165,7 +166,7 @@ class _Chains:
         return (dy, dx) if swap else (dx, dy)
 
     def write(self, grid: Ints, found: list[Trail]) -> None:
-        """The trails of grid points."""
+        """Write trails over grid points (n, 2)."""
         coder = self.coder
         seen: dict[int, int] = {}
         points = grid.tolist()
@@ -198,7 +199,7 @@ class _Chains:
             coder.number(_END, _STEP, kind, min(len(chain) - 1, 15))
 
     def read(self, count: int, columns: int, rows: int) -> None:
-        """So many edges."""
+        """Read ``count`` edges. Raises FormatError."""
         coder, points, ends = self.coder, self.points, self.ends
         last = (0, 0)
 

@@ -1,11 +1,12 @@
-"""Telling lines in as few bytes as they can be: a member of a packed illustration, ``PIl3`` (see `compact`).
+"""Telling lines in few bytes: a member of a packed illustration, ``PIl3`` (see `compact`).
 
-Three whole numbers, W, H and how many lines, then code. Lines come by falling rank, so that the list of a smaller
-print is the beginning of that of a larger one. Points lie on a grid that has so many steps to the root of the frame's
-area, and are as few as keep the curve through them, which is what is drawn, near those given; ranks are kept in
-eighths of an octave, weights in thirds. Lines whose points all lie on the grid are written as they are: what is read
-is written as the same bytes. ``PIl2``, which had finer steps and the points of polygons, and ``PIl1``, which had all
-points, are read.
+Three whole numbers, W, H and the number of lines, then code. Lines come by falling rank, so that the lines of a smaller
+print are the first ones of a larger print's. Points lie on a grid, of 640 steps to the root of the frame's area. As few
+points are kept as let the curve through them, which is what is drawn, stay near the given line. Ranks are kept in
+eighths of an octave, weights in thirds. Lines whose points all lie on the grid are written as they are: what has been
+read is written again as the same bytes.
+
+``PIl2``, of finer steps and the points of polygons, and ``PIl1``, of all points, are read and no longer written.
 """
 
 from __future__ import annotations
@@ -27,25 +28,26 @@ from penink_cli.ground.model import Floats, Ints, Lines
 LINES, LINES_2, LINES_1 = b"PIl3", b"PIl2", b"PIl1"
 ALL_LINES = LINES, LINES_2, LINES_1
 MOST_RANK = 1000
-MAX_POINTS = 1 << 20
+MAX_POINTS = 1 << 20  # of all lines
 
 _RANK, _KIND, _COUNT, _BREADTH, _X, _Y, _MAIN, _ASIDE, _MAIN_TURN, _ASIDE_TURN, _WEIGHT, _PRESS = range(12)
 
 
 class _Steps(NamedTuple):
-    """What numbers are kept in: grid steps to the root of the frame's area, ranks, steps of weight to 1."""
+    """side: steps of the grid to the root of the frame's area. ranks: those that are kept. weight: steps up to 1."""
 
     side: int
     ranks: Floats
     weight: int
 
     def grid(self, width: int, height: int) -> tuple[int, int]:
+        """Columns and rows of the grid over a frame."""
         root = math.sqrt(width * height)
         columns, rows = (min(max(1, math.floor(self.side * side / root + 0.5)), MAX_GRID) for side in (width, height))
         return columns, rows
 
 
-# Of ranks the next higher one is kept: at a lower one a line that there is room for might stay away. Old ones are even.
+# A rank is kept as the next higher of these: with a lower one a line that there is room for might be left out.
 _RANKS = np.array([0.0, *(round(0.25 * 2 ** (k / 8), 4) for k in range(96)), MOST_RANK])
 _WRITTEN = _Steps(640, _RANKS, 3)
 _STEPS = {
@@ -53,12 +55,12 @@ _STEPS = {
     LINES_2: _Steps(880, np.arange(MOST_RANK * 4 + 1) / 4, 3),
     LINES_1: _Steps(1280, np.arange(MOST_RANK * 16 + 1) / 16, 7),
 }
-_NEAR = 0.75  # steps that a line may lie beside the curve that is kept: half a point at 6 in, less than its pen
-_LEAST_RING = 6  # points, of a line that closes: what has fewer is drawn open
+_NEAR = 0.75  # steps that the curve that is kept may lie beside the line: half a point at 6 in, less than a pen's width
+_LEAST_RING = 6  # points of a line that is drawn as a ring; with fewer it is drawn open
 
 
 def lines_bytes(lines: Lines) -> bytes:
-    """Telling lines at the precision they are kept at, those that it leaves no length left away. Raises LimitError."""
+    """Telling lines at the precision they are kept at, without those that then have no length. Raises LimitError."""
     columns, rows = _WRITTEN.grid(lines.width, lines.height)
     scale = np.array([columns / lines.width, rows / lines.height])
     kept, at, weights = _fewest(lines, scale)
@@ -92,7 +94,7 @@ def lines_bytes(lines: Lines) -> bytes:
 
 
 def lines_from(data: bytes) -> Lines:
-    """What `lines_bytes` wrote, each line sound. Raises FormatError, and LimitError."""
+    """What `lines_bytes` wrote, each line sound (see `lines.check`). Raises FormatError and LimitError."""
     magic = data[:4] if data[:4] in _STEPS else LINES
     first, kept = magic == LINES_1, _STEPS[magic]
     (width, height, count), rest = header(data, magic, 3)
@@ -147,7 +149,10 @@ def lines_from(data: bytes) -> Lines:
 
 
 def _fewest(lines: Lines, scale: Floats) -> tuple[npt.NDArray[np.bool_], Ints, Ints]:
-    """Which points are kept, where all would lie on the grid, and their weights in steps."""
+    """(p,) which points are kept, (p, 2) the nearest grid point of each, (p,) its weight in steps.
+
+    scale: (2,) grid steps to a pixel.
+    """
     points, weight = lines.points * scale, lines.weight * _WRITTEN.weight
     places = np.floor(points + 0.5)
     if not len(points) or (np.abs(points - places) < 1e-6).all():
@@ -166,7 +171,7 @@ def _fewest(lines: Lines, scale: Floats) -> tuple[npt.NDArray[np.bool_], Ints, I
 
 
 def _still_closed(points: Floats, kept: npt.NDArray[np.bool_]) -> None:
-    """Keep more points of a line, in place, where with fewer it would close that is open, or open that is closed."""
+    """Keep more points of a line, in place, where those kept would open a ring, or close a line that is open."""
     if _closes(points):
         wanted = np.rint(np.linspace(0, len(points) - 1, _LEAST_RING)).astype(np.int64)
         if kept.sum() < _LEAST_RING:
@@ -182,7 +187,7 @@ def _still_closed(points: Floats, kept: npt.NDArray[np.bool_]) -> None:
 
 
 def _closes(points: Floats) -> bool:
-    """Whether a line is drawn as a ring, as `lines.strokes` has it."""
+    """Whether a line is drawn as a ring; the rule is that of `penink_cli/lines/strokes.py`."""
     gap = points[0] - points[-1]
     if len(points) < _LEAST_RING:
         return False
@@ -190,9 +195,10 @@ def _closes(points: Floats) -> bool:
 
 
 def _code_path_2(coder: Coder, path: list[list[int]], columns: int, rows: int) -> None:
-    """Points, given (to write) or not (to read, in place), each step expected in the direction of the one before it.
+    """Code the points of a line, of ``PIl2`` and ``PIl3``: they are written, or read in place.
 
-    Steps are written along the longer side of the one before, then what they are beside its direction.
+    Each step is expected in the direction of the one before. It is coded by its coordinate along the longer side of
+    that one, then by how far it lies beside the direction. Raises FormatError.
     """
     x = path[0][0] = coder.number(path[0][0], _X)
     y = path[0][1] = coder.number(path[0][1], _Y)
@@ -224,6 +230,7 @@ def _code_path_2(coder: Coder, path: list[list[int]], columns: int, rows: int) -
 
 
 def _code_weights_2(coder: Coder, weights: list[int]) -> None:
+    """Code the weights of a line, of ``PIl2`` and ``PIl3``: they are written, or read in place. Raises FormatError."""
     last = 0
     for k in range(len(weights)):
         if coder.overrun:
@@ -238,9 +245,10 @@ def _check_weight(weight: int, most: int) -> None:
 
 
 def _code_path(coder: Coder, path: list[list[int]], columns: int, rows: int) -> None:
-    """Points, given (to write) or not (to read, in place): each step is expected to go on as the one before it.
+    """Read the points of a line of ``PIl1``, in place. Raises FormatError.
 
-    Steps are written along the longer side of the one before, then across it.
+    Each step is expected to be the one before again. It is coded by its difference from that one, along the longer side
+    of that one, then across.
     """
     x = path[0][0] = coder.number(path[0][0], _X)
     y = path[0][1] = coder.number(path[0][1], _Y)
@@ -268,6 +276,7 @@ def _code_path(coder: Coder, path: list[list[int]], columns: int, rows: int) -> 
 
 
 def _code_weights(coder: Coder, weights: list[int]) -> None:
+    """Read the weights of a line of ``PIl1``, in place. Raises FormatError."""
     last = step = 0
     for k in range(len(weights)):
         if coder.overrun:
@@ -278,11 +287,11 @@ def _code_weights(coder: Coder, weights: list[int]) -> None:
 
 
 def _size(value: int) -> int:
-    """0 … 11, finer for small numbers."""
+    """The class of a size, 0 … 11, finer for small sizes."""
     value = abs(value)
     return value if value < 6 else min(11, 6 + (value - 6) // 4)
 
 
 def _within(value: int) -> int:
-    """0 … 20."""
+    """The value, within ±10, counted from 0: 0 … 20."""
     return max(-10, min(10, value)) + 10

@@ -23,7 +23,7 @@ MAXVAL = 254  # as written: even, so that 0, ±½ and ±1 are levels
 def read(stream: BinaryIO, source: str, max_pixels: int) -> Directions:
     """A direction field whose planes have one size and whose confidence is not 0 everywhere.
 
-    cos 2θ and sin 2θ are as stored: a unit vector but for the rounding. Bytes after the third image are ignored.
+    cos 2θ and sin 2θ are as stored: a unit vector up to rounding. Bytes after the third image are ignored.
 
     Raises FormatError, which names the plane, and LimitError for more than max_pixels samples.
     """
@@ -41,7 +41,7 @@ def read(stream: BinaryIO, source: str, max_pixels: int) -> Directions:
 
 
 def _plane(stream: BinaryIO, source: str, max_pixels: int, name: str, first: bool) -> GreyImage:
-    """The next image of the stream."""
+    """The next image of the stream, called ``name`` in errors. Raises FormatError and LimitError."""
     magic = stream.read(2)
     if first and magic not in (b"P2", b"P5"):
         from penink_cli.formats.recognise import ENOUGH, explained
@@ -67,7 +67,7 @@ def check_shape(directions: Directions, width: int, height: int) -> None:
 
 
 def rounded(directions: Directions, levels: int = MAXVAL) -> Directions:
-    """The field as it is read after it has been written with a maxval of so many levels."""
+    """The field as it is read after it has been written with a maxval of ``levels``."""
     cos2, sin2, confidence = (plane.values / float(plane.maxval) for plane in _images(directions, levels))
     return Directions(cos2 * 2 - 1, sin2 * 2 - 1, confidence)
 
@@ -78,9 +78,9 @@ def _images(directions: Directions, maxval: int) -> list[GreyImage]:
 
 
 def write(out: Output, directions: Directions) -> None:
-    """Write a field, its confidence in levels of which at least one is above 0.
+    """Write a field, its planes rounded to MAXVAL levels.
 
-    Raises FormatError where it would not be read again.
+    Raises FormatError where the confidence is 0 everywhere once it is rounded, which is not read again.
     """
     images = _images(directions, MAXVAL)
     if not images[2].values.any():

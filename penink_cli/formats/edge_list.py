@@ -1,7 +1,7 @@
 """Edge lists (``*.edges.json``): the discontinuity edges of a photograph, in its pixels.
 
-`read` checks what can be said of each vertex and edge by itself and of equal ones. That edges meet at
-shared vertices only is geometry, and checked by the room that does geometry.
+`read` checks each vertex and each edge by itself, and that no two are equal. That edges meet at shared vertices only
+is checked by `geometry.validity`.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ def _spaced(*parts: bytes) -> re.Pattern[bytes]:
     return re.compile(gap + gap.join(parts) + gap)
 
 
-# What `write` writes, but for white space and the digits; all else is left to json.
+# The text that `write` writes, whatever its white space and digits; json reads every other.
 _SIDE = rb"([1-9][0-9]{0,9})"
 _HEAD = _spaced(
     rb"\{", rb'"format"', b":", rb'"penink-edges"', b",", rb'"version"', b":", b"1", b",",
@@ -102,7 +102,7 @@ def _plain(text: bytes) -> EdgeList | None:
 
 
 def _numbers(text: bytes, at: int, group: int, whole: bool) -> tuple[Floats, int]:
-    """Numbers (n,) of the array that begins before ``at``, and the place after it, -1 where it is not plain."""
+    """Numbers (n,) of the array whose bracket stands before ``at``, and the place after it; -1 for one not plain."""
     from penink_cli.formats._compiled import plain_json as _plain_json
 
     end = text.find(b'"', at)  # of the next member, or none
@@ -177,7 +177,7 @@ def _first_equal(rows: Floats | Ints) -> tuple[int, int] | None:
 
 
 def rounded(edges: EdgeList) -> EdgeList:
-    """The edge list as `write` would write it: coordinates and strengths to DECIMALS decimals."""
+    """The edge list as `write` writes it: coordinates and strengths rounded to DECIMALS decimals."""
     strength = None if edges.strength is None else np.round(edges.strength, DECIMALS) + 0.0
     return EdgeList(edges.width, edges.height, np.round(edges.vertices, DECIMALS) + 0.0, edges.edges, strength)
 
@@ -185,7 +185,7 @@ def rounded(edges: EdgeList) -> EdgeList:
 def write(out: Output, edges: EdgeList) -> None:
     """Write an edge list, one vertex and one edge a line.
 
-    Raises FormatError where it would not be read again, rounding included.
+    Raises FormatError for an edge list that, rounded, could not be read again.
     """
     edges = rounded(edges)
     check(edges)

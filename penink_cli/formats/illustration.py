@@ -4,9 +4,10 @@
      "layers": [{"name": "keys", "samples": "keys.pgm", "edges": "keys.edges.json",
                  "texture": "crosshatch", "outline": {"pen": 0.7, "min_strength": 0.1}}]}
 
-Samples are PGM files or compact ones, edges are edge lists or compact ones, and so are directions, told apart by
-their first bytes; paths are relative to the manifest. The same manifest, beside one file of compact members, its
-``"parts"``, is what a ``*.penink`` archive holds. See README.md beside this file and schemas/illustration.schema.json.
+Each member of a layer is a file of its own format (PGM samples, an edge list, telling lines, a direction field, a
+texture) or a compact one; the first bytes say which. Paths are relative to the manifest. A ``*.penink`` archive holds
+such a manifest and one file of compact members, its ``"parts"``. See README.md beside this file and
+schemas/illustration.schema.json.
 """
 
 from __future__ import annotations
@@ -39,14 +40,15 @@ from penink_cli.ground.rules import RULES
 
 FORMAT = "penink-illustration"
 MANIFEST = "illustration.json"  # its name within an archive
-PARTS = "parts"  # and that of all the rest
+PARTS = "parts"  # the name of the file of all compact members within an archive
 MAX_BYTES = 1 << 20  # of the manifest
 MAX_LAYERS = 64
-MAX_SIZE = 144_000.0  # points
-MAX_PEN = 72.0
+MAX_SIZE = 144_000.0  # of the picture, points
+MAX_PEN = 72.0  # points
 MAX_STRAY = 144.0  # of lines, points
+LEAST_LENGTH = 0.01  # of sizes and pens, points
 COMPACT = parts.COMPACT
-LEVELS = 16  # of grey, unless a layer says another number: what ink shows of more is nothing
+LEVELS = 16  # of grey, unless a layer says another number: ink shows no more
 
 _SHIPPED = re.compile(r"[a-z0-9_-]{1,60}", re.ASCII)
 
@@ -59,8 +61,11 @@ Shipped = Callable[[str], Texture]
 def read(text: bytes, source: str, fetch: Fetch, shipped: Shipped, max_pixels: int) -> Illustration:
     """The illustration whose manifest is ``text``.
 
-    Edges are sound each by itself; that they cross nowhere is for geometry to check. Raises FormatError, which
-    names the layer and member, and LimitError.
+    source: names the manifest in errors. fetch, shipped: see `Fetch` and `Shipped`. max_pixels: of the samples of all
+    layers together.
+
+    Each edge is sound by itself; that edges meet at shared vertices only is for `geometry.validity` to check. Raises
+    FormatError, which names the layer and member, and LimitError.
     """
     try:
         if len(text) > MAX_BYTES:
@@ -74,8 +79,7 @@ def read(text: bytes, source: str, fetch: Fetch, shipped: Shipped, max_pixels: i
         layers: list[Layer] = []
         left = min(max_pixels, compact.MAX_SAMPLES)
         for i, item in enumerate(items):
-            if not isinstance(item, dict):
-                raise FormatError(f"layer {i} is {strict_json.quoted(item)}; an object is needed")
+            item = strict_json.members(item, f"layer {i}")
             layers.append(_layer(item, f"layer {i}", fetch_part, shipped, left))
             left -= layers[-1].samples.values.size
     except PeninkError as error:
@@ -86,7 +90,7 @@ def read(text: bytes, source: str, fetch: Fetch, shipped: Shipped, max_pixels: i
 
 
 def _with_parts(document: dict[str, Any], fetch: Fetch) -> Fetch:
-    """How members are fetched, those of the file of parts among them if the manifest names one."""
+    """``fetch``, which also knows the parts by their names if the manifest has a file of parts."""
     if "parts" not in document:
         return fetch
     held: list[bytes] = _fetched(document, "parts", "", fetch, parts.parts_from)
@@ -99,7 +103,7 @@ def _with_parts(document: dict[str, Any], fetch: Fetch) -> Fetch:
 
 
 def _fetched(item: dict[str, Any], name: str, place: str, fetch: Fetch, take: Callable[[bytes], Any]) -> Any:
-    """What the member of that path holds; errors name it."""
+    """What ``take`` makes of the file whose path is the member ``name``. Raises FormatError, which names both."""
     shown = f"{place}: {name}" if place else name
     path = strict_json.text(strict_json.member(item, name, place), shown)
     what = f"{shown} {strict_json.quoted(path)}"
@@ -112,6 +116,8 @@ def _fetched(item: dict[str, Any], name: str, place: str, fetch: Fetch, take: Ca
 
 
 def _layer(item: dict[str, Any], place: str, fetch: Fetch, shipped: Shipped, max_pixels: int) -> Layer:
+    """The layer that an object of the manifest says; place: names the layer in errors. Raises FormatError."""
+
     def member(name: str, take: Callable[[bytes], Any]) -> Any:
         return _fetched(item, name, place, fetch, take)
 
@@ -158,19 +164,16 @@ def _layer(item: dict[str, Any], place: str, fetch: Fetch, shipped: Shipped, max
 
 
 def _line(item: Any, place: str) -> LineChoice:
-    if not isinstance(item, dict):
-        raise FormatError(f"{place} is {strict_json.quoted(item)}; an object is needed")
+    """How telling lines are drawn. Raises FormatError."""
+    item = strict_json.members(item, place)
     default = LineChoice()
-    even = item.get("even", default.even)
-    if type(even) is not bool:
-        raise FormatError(f"{place}: even is {strict_json.quoted(even)}; true or false is needed")
 
     def number(name: str, default: Any, least: float, most: float) -> Any:
         return strict_json.number(item[name], f"{place}: {name}", least, most) if name in item else default
 
     return LineChoice(
         pen_pt=_length(item, "pen", MAX_PEN, place) if "pen" in item else default.pen_pt,
-        even=even,
+        even=strict_json.flag(item.get("even", default.even), f"{place}: even"),
         density=number("density", default.density, 0.0001, 1e4),
         per_inch2=number("per_inch2", default.per_inch2, 0.0001, 1e4),
         min_rank=number("min_rank", default.min_rank, 0, lines_format.MAX_RANK),
@@ -180,16 +183,13 @@ def _line(item: Any, place: str) -> LineChoice:
 
 
 def _outline(item: Any, place: str) -> OutlineChoice:
-    if not isinstance(item, dict):
-        raise FormatError(f"{place} is {strict_json.quoted(item)}; an object is needed")
+    """How outlines are drawn. Raises FormatError."""
+    item = strict_json.members(item, place)
     default = OutlineChoice()
-    even = item.get("even", default.even)
-    if type(even) is not bool:
-        raise FormatError(f"{place}: even is {strict_json.quoted(even)}; true or false is needed")
     regions = strict_json.pairs(item.get("regions", []), f"{place}: regions", f"{place}: region").tolist()
     return OutlineChoice(
         pen_pt=_length(item, "pen", MAX_PEN, place) if "pen" in item else default.pen_pt,
-        even=even,
+        even=strict_json.flag(item.get("even", default.even), f"{place}: even"),
         min_strength=strict_json.number(item.get("min_strength", 0), f"{place}: min_strength", 0, 1),
         min_length=strict_json.number(item.get("min_length", 0), f"{place}: min_length", 0, edge_list.MAX_SIDE),
         regions=tuple((x, y) for x, y in regions),
@@ -197,12 +197,13 @@ def _outline(item: Any, place: str) -> OutlineChoice:
 
 
 def _length(item: dict[str, Any], name: str, most: float, place: str = "") -> float:
+    """A length on paper, points. Raises FormatError."""
     what = f"{place}: {name}" if place else name
-    return strict_json.number(strict_json.member(item, name, place), what, 0.01, most)
+    return strict_json.number(strict_json.member(item, name, place), what, LEAST_LENGTH, most)
 
 
 def _samples(data: bytes, max_pixels: int, edges: EdgeList | None) -> tuple[GreyImage, bool]:
-    """Samples, and whether they come in the compact form, which has as many levels as they are kept at."""
+    """Samples, and whether they are compact: then they have as many levels already as they are kept at."""
     if is_compact(data, compact.ALL_SAMPLES):
         return compact.samples_from(data, max_pixels, edges), True
     return pgm.read(io.BytesIO(data), "", max_pixels), False
@@ -240,9 +241,11 @@ def _texture(data: bytes) -> Texture:
 
 
 def members(illustration: Illustration) -> dict[str, bytes]:
-    """Manifest and the file of compact members by name, as an archive holds them; defaults are not written.
+    """The manifest and the file of compact members, by their names in an archive; defaults are not written.
 
-    What layers share, as plates of one picture share its edges, is one part.
+    A member that several layers share, as the plates of one picture share its edges, is one part.
+
+    Raises LimitError for a member that is too large, ParameterError for a text that is not UTF-8.
     """
     places: dict[bytes, int] = {}  # of the parts, in their order
 
@@ -252,7 +255,10 @@ def members(illustration: Illustration) -> dict[str, bytes]:
     layers = []
     for layer in illustration.layers:
         rows, columns = layer.samples.values.shape
-        item: dict[str, Any] = {} if layer.name is None else {"name": layer.name}
+        item: dict[str, Any] = {}
+        if layer.name is not None:
+            strict_json.written(layer.name, "a layer's name")  # refuses a name that could not be read again
+            item["name"] = layer.name
         put(item, "samples", compact.samples_bytes(layer.samples, layer.edges))
         if layer.edges is not None:
             put(item, "edges", _edges_bytes(layer.edges, columns, rows))
@@ -292,6 +298,7 @@ def members(illustration: Illustration) -> dict[str, bytes]:
 
 
 def _line_item(line: LineChoice) -> dict[str, Any]:
+    """How telling lines are drawn, for the manifest."""
     default = LineChoice()
     item = {}
     for name, value, usual in (
@@ -309,6 +316,7 @@ def _line_item(line: LineChoice) -> dict[str, Any]:
 
 
 def _outline_item(outline: OutlineChoice) -> dict[str, Any]:
+    """How outlines are drawn, for the manifest."""
     default = OutlineChoice()
     item = {}
     for name, value, usual in (
@@ -334,8 +342,8 @@ def _plain(value: Any) -> Any:
 def rounded(illustration: Illustration) -> Illustration:
     """What `read` gives back of what `members` writes: samples at their levels, edges and numbers as written.
 
-    An illustration is worked with in this form only, so that one read from loose files and one
-    unpacked draw the same strokes. Its edges must lie on the grid (`geometry.quantisation`).
+    Whatever draws an illustration is given this form, so that the same strokes come of loose files and of an archive.
+    The edges must lie on the grid already (`geometry.quantisation`).
     """
     layers = []
     for layer in illustration.layers:
@@ -374,6 +382,7 @@ def rounded(illustration: Illustration) -> Illustration:
 
 
 def _edges_bytes(edges: EdgeList, columns: int, rows: int) -> bytes:
+    """Compact edges on the coarsest grid that holds them, beside samples of columns × rows."""
     points = compact_edges.on_grid(edges, columns, rows) or compact_edges.GRIDS[-1]
     return compact_edges.edges_bytes(edges, points * columns, points * rows)
 

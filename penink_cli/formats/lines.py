@@ -1,4 +1,4 @@
-"""Telling lines (``*.lines.json``): what a pen would draw of a photograph besides its tone, in its pixels.
+"""Telling lines (``*.lines.json``): what a pen would draw of a photograph besides its tone, in the photo's pixels.
 
     {"format": "penink-lines", "version": 1, "width": 640, "height": 480, "lines": [
       {"points": [[10, 20.5], [14, 22], [19, 22.5]], "weight": [0.2, 0.9, 0.4], "rank": 7.25},
@@ -27,12 +27,12 @@ DECIMALS = 2  # of coordinates, breadths and ranks, as written
 WEIGHTS = 3  # decimals of weights
 MAX_SIDE = 2**31 - 1  # of a frame, pixels
 MAX_RANK = 1e6
-MAX_BYTES = 80_000_000  # an ordinary photograph has a few hundred thousand
+MAX_BYTES = 80_000_000  # the lines of an ordinary photograph take a few hundred thousand
 MAX_LINES = 1_000_000
 
 
 def read(stream: BinaryIO, source: str) -> Lines:
-    """Telling lines, each sound by itself: within the frame, a weight for each point, no point twice in a row.
+    """Telling lines, each of which `check` allows: within the frame, a weight for each point, no point twice in a row.
 
     Raises FormatError, which names the line, and LimitError for more than MAX_BYTES bytes or MAX_LINES lines.
     """
@@ -62,8 +62,7 @@ def _lines(document: object) -> Lines:
     whites = np.zeros(len(items), np.bool_)
     for i, item in enumerate(items):
         place = f"line {i}"
-        if type(item) is not dict:
-            raise FormatError(f"{place} is {strict_json.quoted(item)}; an object is needed")
+        item = strict_json.members(item, place)
         points.append(strict_json.array(strict_json.member(item, "points", place), f"{place}: points"))
         weights.append(strict_json.array(strict_json.member(item, "weight", place), f"{place}: weight"))
         if len(weights[-1]) != len(points[-1]):
@@ -71,10 +70,8 @@ def _lines(document: object) -> Lines:
         ranks[i] = strict_json.number(strict_json.member(item, "rank", place), f"{place}: rank", 0, MAX_RANK)
         if "breadth" in item:
             breadths[i] = strict_json.number(item["breadth"], f"{place}: breadth", 0, MAX_SIDE)
-        whites[i] = white = item.get("white", False)
-        if type(white) is not bool:
-            raise FormatError(f"{place}: white is {strict_json.quoted(white)}; true or false is needed")
-    try:  # all at once: one by one they take three times as long
+        whites[i] = strict_json.flag(item.get("white", False), f"{place}: white")
+    try:  # the points of all lines at once: line by line it takes three times as long
         at = strict_json.pairs(list(chain.from_iterable(points)), "points", "point")
         weight = strict_json.numbers(list(chain.from_iterable(weights)), "weight", "weight")
     except FormatError:
@@ -118,7 +115,7 @@ def check(lines: Lines) -> None:
 
 
 def rounded(lines: Lines) -> Lines:
-    """The lines as `write` writes them: numbers to their decimals, points that then fall together once."""
+    """The lines as `write` writes them: numbers rounded to their decimals, and no point twice in a row."""
     points = np.round(lines.points, DECIMALS) + 0.0
     whose = np.repeat(np.arange(len(lines)), np.diff(lines.first))
     keep = np.ones(len(points), np.bool_)
@@ -134,7 +131,7 @@ def rounded(lines: Lines) -> Lines:
 def write(out: Output, lines: Lines) -> None:
     """Write telling lines, one a line of text.
 
-    Raises FormatError where they would not be read again, rounding included.
+    Raises FormatError for lines that, rounded, could not be read again.
     """
     lines = rounded(lines)
     check(lines)

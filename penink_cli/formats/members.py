@@ -21,7 +21,7 @@ def written_numbers(*values: int) -> bytes:
 
 
 def read_numbers(data: bytes, at: int, count: int) -> tuple[list[int], int]:
-    """So many whole numbers from byte `at`, and where the next byte is. Raises FormatError."""
+    """``count`` whole numbers from byte ``at`` on, and where the next byte is. Raises FormatError."""
     values = []
     for _ in range(count):
         value = shift = 0
@@ -59,7 +59,7 @@ def header(data: bytes, magic: bytes, count: int) -> tuple[list[int], bytes]:
 
 
 def finished(coder: Coder) -> bytes:
-    """All that was written, its end marked. Raises LimitError for more than MAX_CODE bytes."""
+    """The code of all that was written to the coder. Raises LimitError for more than MAX_CODE bytes."""
     code: bytes = coder.finish()
     _check_size(len(code))
     return code
@@ -71,7 +71,7 @@ def _check_size(size: int) -> None:
 
 
 def check_end(coder: Coder) -> None:
-    """Raise FormatError unless what was read ends in the mark, and the bytes with it."""
+    """Raise FormatError unless the end mark comes next, and no byte after it."""
     if not coder.end() or coder.overrun:
         raise FormatError("truncated or damaged")
     if coder.rest:

@@ -30,9 +30,9 @@ def parts_bytes(parts: list[bytes]) -> bytes:
 
 
 def parts_from(data: bytes) -> list[bytes]:
-    """The parts of such a file; they need not be sound themselves, but they are compact members, and no bytes are over.
+    """The parts of such a file, each a compact member by its first bytes; what it holds is not looked at.
 
-    Raises FormatError, and LimitError for more than MAX_PARTS.
+    Raises FormatError, also for bytes behind the last part, and LimitError for more than MAX_PARTS parts.
     """
     if data[:4] != PARTS:
         raise FormatError(f"begins with {data[:4]!r}; {PARTS!r} is expected")
@@ -51,7 +51,7 @@ def parts_from(data: bytes) -> list[bytes]:
 
 
 def chosen(parts: list[bytes], path: str) -> bytes | None:
-    """The part that a manifest calls so; None for the path of a file. Raises FormatError where it is missing."""
+    """The part that ``path`` of a manifest names; None for the path of a file. Raises FormatError for no such part."""
     if not path.startswith("#"):
         return None
     at = _NAME.fullmatch(path)

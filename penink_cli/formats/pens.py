@@ -3,8 +3,8 @@
     {"format": "penink-pens", "version": 1, "pens": [
       {"name": "fine", "color": "#000000", "width": 0.85, "speed": 142, "refill": 85000}]}
 
-Lengths are points, or texts with a unit as one would type them: "0.3mm". See README.md beside this file and
-schemas/pens.schema.json.
+Lengths are numbers of points, or texts with a unit as on the command line: "0.3mm". See README.md beside this file
+and schemas/pens.schema.json.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from penink_cli.ground.units import parse_length
 FORMAT = "penink-pens"
 MAX_BYTES = 1 << 20
 MAX_PENS = 64
+LEAST_LENGTH = 0.01  # points
 MAX_WIDTH = 72.0  # points
 MAX_LENGTH = 1e7  # points; 3.5 km
 
@@ -27,8 +28,8 @@ MAX_LENGTH = 1e7  # points; 3.5 km
 class Pen:
     """One pen.
 
-    width: points. color: ``#rrggbb``. speed: points a second that it draws, None for the plotter's. refill: points of
-    line after which it wants refilling or changing, None for never.
+    width: points. color: ``#rrggbb``. speed: points a second with the pen down, None for the plotter's own. refill:
+    points of line after which the pen is to be refilled or changed, None for never.
     """
 
     name: str
@@ -39,7 +40,7 @@ class Pen:
 
 
 def read(stream: BinaryIO, source: str) -> tuple[Pen, ...]:
-    """The pens of a file. Raises FormatError, which names pen and member, and LimitError."""
+    """The pens of a file. Raises FormatError, which names pen and member, and LimitError for more than MAX_BYTES."""
     text = stream.read(MAX_BYTES + 1)
     try:
         if len(text) > MAX_BYTES:
@@ -54,13 +55,14 @@ def read(stream: BinaryIO, source: str) -> tuple[Pen, ...]:
             if name in names[:i]:
                 raise FormatError(f"pen {i}: the name {strict_json.quoted(name)} is that of another")
     except (FormatError, LimitError) as error:
-        raise error.from_source(source) from None
+        from penink_cli.formats.recognise import explained
+
+        raise explained(error, text, "pens").from_source(source) from None
     return pens
 
 
 def _pen(item: Any, place: str) -> Pen:
-    if not isinstance(item, dict):
-        raise FormatError(f"{place} is {strict_json.quoted(item)}; an object is needed")
+    item = strict_json.members(item, place)
     name = strict_json.text(strict_json.member(item, "name", place), f"{place}: name")
     if not (name and len(name) <= 60 and name.isprintable()):
         raise FormatError(f"{place}: name {strict_json.quoted(name)}; 1 to 60 printable characters are needed")
@@ -79,4 +81,4 @@ def _length(value: Any, what: str, most: float) -> float:
             value = parse_length(value)
         except ParameterError as error:
             raise FormatError(f"{what}: {error.message}") from None
-    return strict_json.number(value, what, 0.01, most)
+    return strict_json.number(value, what, LEAST_LENGTH, most)

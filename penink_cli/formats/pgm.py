@@ -3,10 +3,10 @@
 An image library would rescale an odd maxval; here every maxval from 1 to 65535 is kept. The
 same reader takes the three channels of PPM (P3, P6) for the sake of photographs.
 
-Header: magic, width, height, maxval, each followed by white space (blank, TAB, CR, LF). A comment
-runs from ``#`` to the end of its line, that end included, and is as if it were not there: it may stand
-within a number, and does not replace the one white space character that separates maxval from the
-raster. After that character every byte of P5 is raster, whatever it looks like.
+Header: magic, width, height, maxval, each followed by white space (blank, TAB, CR, LF). A comment runs from ``#`` to
+the end of its line, that end included. In the header it is as if it were not there: it may stand within a number, and
+does not replace the one white space character that separates maxval from the raster. After that character every byte
+of P5 is raster, whatever it looks like. In the raster of P2 a comment is white space.
 """
 
 from __future__ import annotations
@@ -51,7 +51,8 @@ def read(stream: BinaryIO, source: str, max_pixels: int) -> GreyImage:
 def read_at_most(stream: BinaryIO, source: str, max_pixels: int, most: int) -> GreyImage:
     """The first image of a PGM stream; of more than ``most`` pixels a smaller view, each pixel the mean of k × k.
 
-    Memory grows with ``most``, not with the image. Raises as `read` does, LimitError beyond max_pixels.
+    Memory grows with ``most``, not with the image. Raises FormatError as `read` does, LimitError for more than
+    max_pixels pixels, and for more than ``most`` of P2, which is not read by bands.
     """
     magic = stream.read(2)
     if magic != b"P5":
@@ -91,9 +92,9 @@ class _Again:
 
 
 def read_raster(stream: BinaryIO, source: str, max_pixels: int, magic: bytes) -> tuple[Values, int]:
-    """What follows the magic number of P2, P5 (values (h, w)) or P3, P6 (h, w, 3), and maxval.
+    """Values (h, w) of P2 and P5, (h, w, 3) of P3 and P6, and maxval; the magic number has been read.
 
-    Raises FormatError, and LimitError for more than max_pixels and for what does not fit into memory.
+    Raises FormatError, and LimitError for more than max_pixels pixels and for what does not fit into memory.
     """
     channels = 3 if magic in (b"P3", b"P6") else 1
     width, height, maxval = header_numbers(stream, source, 3)
@@ -177,7 +178,7 @@ def binary(stream: BinaryIO, source: str, count: int, maxval: int, row: int) -> 
     view = flat.view(np.uint8).data
     filled = 0
     while filled < len(view):
-        # By bands: memory is touched, and so taken, only as the bytes arrive.
+        # By bands: the system gives memory as it is touched, so a stream that is cut short takes little.
         got = stream.readinto(view[filled : filled + BAND])  # type: ignore[attr-defined]
         if not got:
             raise FormatError(f"truncated: {filled} of {len(view)} raster bytes", source)
@@ -198,9 +199,9 @@ def _check_values(values: npt.NDArray[np.integer], start: int, maxval: int, row:
 
 
 def _plain(stream: BinaryIO, source: str, count: int, maxval: int, row: int) -> Values:
-    """``count`` decimal values in white space, and nothing after them.
+    """``count`` decimal values (count,) in white space, and nothing after them. Raises FormatError.
 
-    Comments are taken here too, as Netpbm's own programs do: ``#`` can mean nothing else.
+    Comments are taken here too, as Netpbm's own programs take them: ``#`` can mean nothing else.
     """
     flat = np.empty(count, np.uint8 if maxval < 256 else np.uint16)
     filled = 0
@@ -220,7 +221,7 @@ def _plain(stream: BinaryIO, source: str, count: int, maxval: int, row: int) -> 
         stray = text.translate(None, b"0123456789" + WHITE)
         if stray:
             raise FormatError(f"raster: decimal numbers are expected, found {_shown(stray[:61])}", source)
-        # strtol, which saturates: what is too large stays too large.
+        # numpy reads by strtol, which saturates: a number beyond 64 bits stays above maxval.
         values = np.fromstring(text, np.int64, sep=" ") if text.strip(WHITE) else np.empty(0, np.int64)
         _check_values(values, filled, maxval, row, source)
         if filled + len(values) > count:
@@ -235,7 +236,7 @@ def _plain(stream: BinaryIO, source: str, count: int, maxval: int, row: int) -> 
 
 
 def _without_comments(text: bytes, comment: bool) -> tuple[bytes, bool]:
-    """Replace each comment by a blank; whether the text ends within one."""
+    """The text with a blank for each comment, and whether it ends within one; comment: whether it begins within one."""
     kept: list[bytes] = []
     while True:
         if comment:
@@ -266,7 +267,7 @@ def rows(values: npt.NDArray[np.integer], maxval: int) -> memoryview:
 
 
 def write(out: Output, image: GreyImage | ColourImage) -> None:
-    """Write an image as P5, one in colours as P6, by bands."""
+    """Write an image by bands: a grey one as P5, a coloured one as P6."""
     height, width = image.values.shape[:2]
     out.write(header(width, height, image.maxval, b"P5" if image.values.ndim == 2 else b"P6"))
     band = max(1, BAND // width)

@@ -1,6 +1,6 @@
-"""What a file is by its first bytes, for whoever has given a command the wrong one.
+"""What a file is by its first bytes, for the error line of a command that was given the wrong one.
 
-Readers come here when they fail, and not before: it costs nothing where all is well.
+A reader asks only when it has failed: a file that is right is not looked at here.
 """
 
 from __future__ import annotations
@@ -24,6 +24,7 @@ _NAMES = {
     "directions": "a direction field",
     "texture": "a texture",
     "style": "a style",
+    "pens": "a list of pens",
     "illustration": "an illustration",
     "svg": "an SVG drawing",
     "page": "a finished drawing",
@@ -72,7 +73,7 @@ _FOREIGN = (
     (0, b"BM", "a BMP picture of a kind that is not read"),
 )  # fmt: skip
 
-# By what was wanted and what was found: the way out. "*" is for all that is wanted and not named.
+# By the kind wanted and the kind found: what the user may do. "*" stands for every kind wanted that has no line.
 _WAYS = {
     ("strokes", "pgm"): "`penink blast` makes strokes of it",
     ("strokes", "photo"): "`penink draw` makes a drawing of it",
@@ -94,6 +95,7 @@ _WAYS = {
     ("texture", "svg"): "`penink texture import` makes one of it",
     ("*", "edges"): "--edges takes it",
     ("*", "style"): "`penink draw --style` draws in it",
+    ("*", "pens"): "`penink to-svg --pens` takes it",
     ("*", "texture"): "`penink blast --texture` draws with it",
     ("*", "illustration"): "`penink render` draws it",
     ("*", "page"): "penink writes such files, and reads none",
@@ -102,7 +104,7 @@ _WAYS = {
 
 
 def kind(start: bytes) -> tuple[str, str] | None:
-    """A key of _NAMES for the file that begins so, and its name in a sentence; None where it is none of those.
+    """The key in _NAMES of a file's kind, by its first bytes, and its name in a sentence; None for an unknown kind.
 
     >>> kind(b"P5 640 480 255 ")
     ('pgm', 'a PGM image')
@@ -129,7 +131,10 @@ def kind(start: bytes) -> tuple[str, str] | None:
 
 
 def explained(error: PeninkError, start: bytes, wanted: str) -> PeninkError:
-    """The error; but where the file that begins so is not of the kind wanted, one that says what it is instead."""
+    """The error as it is, or one that names the file's kind where that is known and not the kind wanted.
+
+    start: the file's first bytes, ENOUGH of them. wanted: a key of _NAMES.
+    """
     found = kind(start)
     if found is None or found[0] == wanted:
         return error

@@ -1,4 +1,4 @@
-"""How encoded photographs begin: what their reader goes by, and whoever finds one where it does not belong."""
+"""How encoded photographs begin: for their reader, and for `recognise`, which names one in the wrong place."""
 
 # The first bytes of each format, and Pillow's name for it.
 SIGNATURES = (
@@ -12,9 +12,10 @@ SIGNATURES = (
     (b"GIF89a", "GIF"),
     (b"BM", "BMP"),
 )
-# What the ISO base media files that are pictures say of themselves.
+BMP_HEADERS = (12, 40, 52, 56, 64, 108, 124)  # their sizes, bytes
+# Brands that ISO base media files (ISO/IEC 14496-12) declare if they are pictures, by Pillow's name for the kind.
 BRANDS = {"AVIF": (b"avif", b"avis"), "HEIF": (b"heic", b"heix", b"heim", b"heis", b"hevc", b"hevx", b"mif1", b"msf1")}
-NAMES = {"WEBP": "WebP", "HEIF": "HEIC"}
+NAMES = {"WEBP": "WebP", "HEIF": "HEIC"}  # as people write them, where Pillow's name is another
 
 
 def kind_of(start: bytes) -> str | None:
@@ -34,9 +35,7 @@ def kind_of(start: bytes) -> str | None:
             return None
         return next((kind for brand in brands for kind, own in BRANDS.items() if brand in own), None)
     found = next((name for signature, name in SIGNATURES if start.startswith(signature)), None)
-    # two letters are soon found: the size of a BMP's header says more
-    return (
-        None
-        if found == "BMP" and int.from_bytes(start[14:18], "little") not in (12, 40, 52, 56, 64, 108, 124)
-        else found
-    )
+    # Many a text begins with BM, so the size of the header has to be one of BMP's.
+    if found == "BMP" and int.from_bytes(start[14:18], "little") not in BMP_HEADERS:
+        return None
+    return found

@@ -3,6 +3,7 @@
 UTF-8 without a byte order mark; no NaN, no infinity (``1e999`` included), no number beyond a
 double; no member twice; no half of a surrogate pair; nothing after the value. `number`, `whole`,
 `text`, `pairs` and their like then take typed values out of what was read, and never a bool for a number.
+`written` is for writers: it refuses the text that `loads` would refuse.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from penink_cli.ground.errors import FormatError, printable
+from penink_cli.ground.errors import FormatError, ParameterError, printable
 from penink_cli.ground.model import Floats, Ints
 
 _LONG = re.compile(rb"[0-9]{309}")  # digits: the shortest integer that may be beyond a double
@@ -24,7 +25,7 @@ _HALF_SURROGATE = re.compile(rb"\\u[dD][89a-fA-F]")
 
 
 class _Refused(Exception):
-    """What a hook of the decoder has found; `loads` knows the file."""
+    """Raised by a hook of the decoder, which does not know the file; `loads` turns it into a FormatError."""
 
 
 def _members(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
@@ -66,7 +67,7 @@ _LONG_DECODER = json.JSONDecoder(
 def loads(text: bytes, source: str | None = None, place: str = "") -> Any:
     """The value of one JSON text.
 
-    ``place`` (such as ``line 3``) is put before what was found. Raises FormatError.
+    source: the file, for the error. place: such as ``line 3``, put before what was found. Raises FormatError.
     """
     where = f"{place}: " if place else ""
     if text.startswith(b"\xef\xbb\xbf"):
@@ -135,6 +136,13 @@ def member(container: Any, name: str, place: str = "") -> Any:
         raise FormatError(f'{place}{": " if place else ""}member "{name}" is missing') from None
 
 
+def members(value: Any, what: str) -> dict[str, Any]:
+    """An object. Raises FormatError, in which ``what`` names it."""
+    if type(value) is not dict:
+        raise FormatError(f"{what} is {quoted(value)}; an object is needed")
+    return value
+
+
 def header(document: Any, format_name: str, place: str = "") -> dict[str, Any]:
     """An object that says ``"format": format_name, "version": 1``. Raises FormatError."""
     where = f"{place}: " if place else ""
@@ -166,6 +174,13 @@ def number(value: Any, what: str, least: float = -math.inf, most: float = math.i
         bounds = f" from {least:g} to {most:g}" if math.isfinite(least + most) else ""
         bounds = bounds or (f" of at least {least:g}" if math.isfinite(least) else "")
         raise FormatError(f"{what} is {quoted(value)}; a number{bounds} is needed") from None
+
+
+def flag(value: Any, what: str) -> bool:
+    """``true`` or ``false``. Raises FormatError, in which ``what`` names it."""
+    if type(value) is not bool:
+        raise FormatError(f"{what} is {quoted(value)}; true or false is needed")
+    return value
 
 
 def text(value: Any, what: str) -> str:
@@ -206,12 +221,15 @@ def pairs(value: Any, what: str, each: str) -> Floats:
 
 
 def whole_pairs(value: Any, what: str, each: str) -> Ints:
-    """An array of pairs of whole numbers as (n, 2), of any sign."""
+    """An array of pairs of whole numbers of any sign as (n, 2). Raises FormatError as `pairs` does."""
     return _table(value, what, each, (int,), np.int64)
 
 
 def _table(value: Any, what: str, each: str, kinds: tuple[type, ...], dtype: Any) -> npt.NDArray[Any]:
-    """An array of pairs. Types are gathered in sets, not looked at one by one: 20 000 pairs take 3 ms, not 20."""
+    """An array of pairs as (n, 2) of ``dtype``, their numbers of one of ``kinds``. Raises FormatError.
+
+    Types are gathered in sets, not looked at one by one: 20 000 pairs take 3 ms, not 20.
+    """
     items = array(value, what)
     if not set(map(type, items)) <= {list} or not set(map(len, items)) <= {2}:
         at = next(i for i, pair in enumerate(items) if type(pair) is not list or len(pair) != 2)
@@ -227,9 +245,27 @@ def _table(value: Any, what: str, each: str, kinds: tuple[type, ...], dtype: Any
 
 
 def _refuse_first(values: list[Any], each: str, kinds: tuple[type, ...], group: int = 1) -> None:
-    """Name the first value that is of none of ``kinds``, or is an integer beyond int64."""
+    """Raise FormatError for the first value that is of none of ``kinds``, or is an integer beyond int64.
+
+    group: values that ``each`` counts as one.
+    """
     needed = "whole numbers are" if kinds == (int,) else "numbers in range are"
     for i, value in enumerate(values):
         fits = type(value) is int and -(2**63) <= value < 2**63
         if not fits and (type(value) not in kinds or type(value) is int):
             raise FormatError(f"{each} {i // group} holds {quoted(value)}; {needed} needed")
+
+
+# --------------------------------------------------------------------------- for writers
+
+
+def written(value: str, what: str) -> str:
+    """A text as JSON, in ASCII. Raises ParameterError, in which ``what`` names it, where `loads` would refuse it.
+
+    Python makes half of a surrogate pair of each byte that is not UTF-8 in a command line or in the name of a file.
+    """
+    try:
+        value.encode("utf-8")
+    except UnicodeEncodeError:
+        raise ParameterError(f"{what} {quoted(value)} is not UTF-8") from None
+    return json.dumps(value)

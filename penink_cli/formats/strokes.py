@@ -17,7 +17,6 @@ than 16 MiB. See README.md beside this file and schemas/strokes.schema.json.
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Iterator
 from typing import Any, BinaryIO, Protocol
@@ -32,14 +31,15 @@ from penink_cli.ground.model import Strokes
 
 MOST_SEED = 2**63 - 1
 LIMIT = 1e7  # points; 3.5 km. Keeps thousandths exact and every format's integers within 32 bits
-MAX_LINE = 16 << 20
+LEAST_DPI = 0.001  # of a printer, as written
+MAX_LINE = 16 << 20  # bytes
 MAX_POINTS = 50_000_000  # of all strokes: 0.8 GB
-BLOCK = 1 << 20
-BATCH = 1 << 14
+BLOCK = 1 << 20  # bytes read at a time
+BATCH = 1 << 14  # strokes written at a time
 
 
 def read(stream: BinaryIO, source: str) -> Strokes:
-    """Read a whole strokes file; raises FormatError, or LimitError, with the number of the line at fault."""
+    """The strokes of a whole file. Raises FormatError and LimitError, which name the line at fault."""
     try:
         return _read(stream)
     except (FormatError, LimitError) as error:
@@ -66,7 +66,7 @@ def _read(stream: BinaryIO) -> Strokes:
 
                 raise explained(error, text, "strokes") from None
             line_number = 1
-        # A point takes at least 6 bytes and a stroke 28, so nothing that is parsed can overflow these.
+        # A point takes at least 6 bytes and a stroke 28, so the arrays have room for all that the text can hold.
         block_points = np.empty(((len(text) - start) // 6 + 2, 2))
         block_counts = np.empty((len(text) - start) // 28 + 2, np.int64)
         block_widths = np.empty(len(block_counts))
@@ -84,7 +84,7 @@ def _read(stream: BinaryIO) -> Strokes:
             widths.append(block_widths[:strokes].copy())
             knots.append(block_knots[: (used + 2 * strokes) // 3].copy())
             any_swells |= swells
-            if start < len(text):  # a line that is not plain: right in another way, or wrong
+            if start < len(text):  # a line that is not plain: json reads it, or says what is wrong
                 line_number += 1
                 end = text.index(b"\n", start)
                 width, control, at_knots = _stroke(text[start:end], line_number)
@@ -109,7 +109,7 @@ def _read(stream: BinaryIO) -> Strokes:
 
 
 def _blocks(stream: BinaryIO) -> Iterator[bytes]:
-    """The stream in blocks of whole lines, each ended by its newline, the last one too."""
+    """The stream in blocks of whole lines, each ended by its newline, the last one too. Raises FormatError."""
     rest: list[bytes] = []
     held = 0
     line_number = 1
@@ -130,7 +130,7 @@ def _blocks(stream: BinaryIO) -> Iterator[bytes]:
 
 
 def _header(line: bytes) -> dict[str, Any]:
-    """The header's members, by their names in Strokes."""
+    """The header's members, by their names in Strokes. Raises FormatError."""
     value = strict_json.header(_json(line, 1), "penink-strokes", "line 1")
     header: dict[str, Any] = {}
     for side in ("width", "height"):
@@ -150,9 +150,12 @@ def _header(line: bytes) -> dict[str, Any]:
 
 
 def _stroke(line: bytes, line_number: int) -> tuple[float, np.ndarray, np.ndarray | None]:
-    """Width, control points (3k + 1, 2) and, where it has them, widths at the knots (k + 1,) of one line."""
+    """Width, control points (3k + 1, 2) and, where the stroke has them, widths at the knots (k + 1,) of one line.
+
+    Raises FormatError.
+    """
     value = _json(line, line_number)
-    if not isinstance(value, dict):
+    if type(value) is not dict:
         raise FormatError(f"line {line_number}: {strict_json.quoted(value)} is not a stroke")
     width = _size(value, "width", line_number)
     points = strict_json.member(value, "points", f"line {line_number}")
@@ -166,7 +169,7 @@ def _stroke(line: bytes, line_number: int) -> tuple[float, np.ndarray, np.ndarra
 
 
 def _at_knots(value: dict[str, Any], width: float, count: int, line_number: int) -> np.ndarray | None:
-    """The widths at the knots, where the stroke has them."""
+    """Widths at the ``count`` knots (count,), None where the stroke has one width. Raises FormatError."""
     if "widths" not in value:
         return None
     widths = value["widths"]
@@ -183,9 +186,10 @@ def _at_knots(value: dict[str, Any], width: float, count: int, line_number: int)
 
 def _size(value: dict[str, Any], name: str, line_number: int) -> float:
     place = f"line {line_number}"
-    number = strict_json.number(strict_json.member(value, name, place), f"{place}: {name}", -LIMIT, LIMIT)
-    if not number > 0:
-        raise FormatError(f"{place}: {name} is {strict_json.quoted(value[name])}; a number above 0 is needed")
+    number = strict_json.number(strict_json.member(value, name, place), f"{place}: {name}")
+    if not 0 < number <= LIMIT:
+        least = f"a number above 0, up to {LIMIT:.0f}," if number > 0 else "a number above 0"
+        raise FormatError(f"{place}: {name} is {strict_json.quoted(value[name])}; {least} is needed")
     return number
 
 
@@ -194,7 +198,7 @@ def _json(line: bytes, line_number: int) -> Any:
 
 
 class Sink(Protocol):
-    """Whatever bytes can be written to: a file, or an output of streams.py."""
+    """Whatever bytes can be written to: a file, or an `Output` of `ground.streams`."""
 
     def write(self, data: Any, /) -> int:
         """Take all of the bytes."""
@@ -203,7 +207,9 @@ class Sink(Protocol):
 class Writer:
     """Writes a strokes file piece by piece; the header goes out at once.
 
-    width, height: the sheet in points.
+    width, height: the sheet in points. layer, texture, seed, color, device_dpi: as `Strokes` has them.
+
+    Raises ParameterError for a sheet or a text that could not be read again.
     """
 
     def __init__(
@@ -224,8 +230,10 @@ class Writer:
         text += f', "height": {max(height, 0.001):.3f}'
         for name, value in (("layer", layer), ("texture", texture), ("seed", seed), ("color", color)):
             if value is not None:
-                text += f', "{name}": {json.dumps(value)}'
-        text += f', "device_dpi": {"null" if device_dpi is None else format(device_dpi, ".3f")}'
+                shown = strict_json.written(value, name) if isinstance(value, str) else str(value)
+                text += f', "{name}": {shown}'
+        printer = "null" if device_dpi is None else format(max(device_dpi, LEAST_DPI), ".3f")
+        text += f', "device_dpi": {printer}'
         self._out = out
         self._written = 0
         out.write(text.encode("ascii") + b"}\n")
@@ -256,6 +264,6 @@ class Writer:
 
 
 def write(out: Sink, strokes: Strokes) -> None:
-    """Write a whole strokes file."""
+    """Write a whole strokes file. Raises ParameterError as `Writer` does."""
     s = strokes
     Writer(out, s.width, s.height, s.layer, s.texture, s.seed, s.color, s.device_dpi).add(s)

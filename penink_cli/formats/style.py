@@ -5,8 +5,8 @@ One JSON text::
     {"format": "penink-style", "version": 1, "description": "one layer of hatching on much paper",
      "compose": {"strength": 0.9, "target": "high-key"}, "blast": {"texture": "parallel", "pen": "0.5pt"}}
 
-Each member is what one stage is told, by the names of its options on the command line. See README.md beside this file
-and schemas/style.schema.json.
+Each member holds the options of one stage, by their names on the command line. See README.md beside this file and
+schemas/style.schema.json.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from penink_cli.formats import strict_json
 from penink_cli.ground.errors import FormatError
 
 MAX_BYTES = 1 << 20
-#: The stages that a style may tell something.
+#: The stages that a style may have options for.
 STAGES = ("compose", "edges", "lines", "directions", "outline", "blast")
 
 Value = str | float | bool
@@ -27,7 +27,7 @@ Value = str | float | bool
 
 @dataclass(frozen=True)
 class Style:
-    """description: a line of text. stages: for each stage that the style has, values by the names of its options."""
+    """description: a line of text. stages: the values of options, by their names, of each stage that the style has."""
 
     description: str = ""
     stages: dict[str, dict[str, Value]] = field(default_factory=dict)
@@ -44,9 +44,7 @@ def read(stream: BinaryIO, source: str) -> Style:
         stages = {}
         for stage in STAGES:
             if stage in document:
-                options = document[stage]
-                if type(options) is not dict:
-                    raise FormatError(f"{stage} is {strict_json.quoted(options)}; an object is needed")
+                options = strict_json.members(document[stage], stage)
                 for name, value in options.items():
                     if type(value) not in (str, int, float, bool):
                         place = f"{stage}: {strict_json.quoted(name)}"

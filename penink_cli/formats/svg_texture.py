@@ -1,4 +1,4 @@
-"""SVG drawings as textures: their paths become strokes, in drawing order. The one module that imports svgelements."""
+"""SVG drawings as textures: their paths become strokes, in drawing order. No other module imports svgelements."""
 
 from __future__ import annotations
 
@@ -13,17 +13,19 @@ from xml.etree.ElementTree import ParseError
 import numpy as np
 
 from penink_cli.formats.strokes import LIMIT
+from penink_cli.formats.texture import LEAST_WIDTH
 from penink_cli.ground import exact
-from penink_cli.ground.errors import FormatError
+from penink_cli.ground.errors import FormatError, printable
 from penink_cli.ground.model import Floats, Strokes, Texture
 
 MAX_BYTES = 64 << 20
 MAX_STROKES = 500_000
 POINTS_PER_PIXEL = 0.75  # CSS: 96 pixels to the inch
 USUAL_PEN_PT = 0.4
-WHITE = 250  # of 255: a colour that has so much of all three leaves no ink
-CHORDS = 32  # by which a segment's length is told where it is cut in dashes
-CLOSED = 1e-6  # pixels: arcs do not come round to the very digit, and a shape is closed all the same
+MAX_ELEMENTS = 1_000_000  # of a drawing, once each `use` is what it names
+WHITE = 250  # of 255: a colour with at least so much of red, green and blue leaves no ink
+CHORDS = 32  # chords by which the length of a segment is measured where it is cut into dashes
+CLOSED = 1e-6  # pixels: a gap at the end of a closed shape that is no more is a rounding error of its arcs
 
 
 def read(
@@ -36,10 +38,14 @@ def read(
 ) -> Texture:
     """The texture that an SVG drawing makes.
 
-    Paths, lines, polygons, circles … that leave ink count, their transforms applied: along what is stroked, dashes as
-    dashes, and around what is only filled; a subpath is a stroke. The tile is the drawing's size. pen_pt: the width of
-    all strokes; by default each one's stroke-width, or 0.4 pt where it has none. report: told what is left out: what is
-    invisible or white, a background, text and images. Raises FormatError.
+    Every shape that leaves ink counts, its transforms applied. A stroked shape is followed, dash by dash if it is
+    dashed, and one that is only filled is drawn around. Each subpath is a stroke. The tile has the drawing's size.
+
+    pen_pt: the width of all strokes; None for each shape's stroke-width, or 0.4 pt where it has none. whole: as
+    `Texture` has it. report: receives a line about what is left out, which is what is invisible or white, a background,
+    text and images, and about clipped shapes, which are drawn whole.
+
+    Raises FormatError, also for more than MAX_BYTES bytes, MAX_ELEMENTS elements or MAX_STROKES strokes.
     """
     text = stream.read(MAX_BYTES + 1)
     try:
@@ -53,23 +59,51 @@ def read(
 
 
 def _parse(text: bytes) -> Any:
+    """The drawing as svgelements has it. Raises FormatError."""
     import svgelements
 
     try:
+        _check_elements(text)
         drawing = svgelements.SVG.parse(io.BytesIO(_seen(text)), reify=True, ppi=96.0)
     except ParseError as error:
         raise FormatError(f"not SVG: {error}") from None
-    except (ValueError, TypeError, AttributeError, IndexError, KeyError, ZeroDivisionError, RecursionError) as error:
-        # the parser lets what its own conversions raise on broken values through
-        raise FormatError(f"not SVG that can be read: {type(error).__name__}: {error}") from None
+    except FormatError:
+        raise
+    except (ValueError, TypeError, AttributeError, LookupError, ArithmeticError, RecursionError) as error:
+        # The parser does not catch what its own conversions raise on broken values.
+        raise FormatError(f"not SVG that can be read: {printable(f'{type(error).__name__}: {error}', 120)}") from None
     if not isinstance(drawing, svgelements.SVG):
         raise FormatError("not SVG: the outermost element is not svg")
     return drawing
 
 
+def _check_elements(text: bytes) -> None:
+    """Raise FormatError for a drawing that a few `use` in one another make huge, and for one that uses itself."""
+    if b"use" not in text:
+        return
+    tree = ElementTree.fromstring(text)
+    named = {element.get("id"): element for element in tree.iter()}
+    known: dict[ElementTree.Element, int] = {}
+
+    def count(element: ElementTree.Element) -> int:
+        if element not in known:
+            known[element] = MAX_ELEMENTS  # while it is being counted: it is met again only in itself
+            used = element.get("href", element.get("{http://www.w3.org/1999/xlink}href", "")).strip()
+            parts = list(element)
+            if str(element.tag).endswith("use") and used.startswith("#") and used[1:] in named:
+                parts.append(named[used[1:]])
+            known[element] = 1 + sum(map(count, parts))  # whole numbers
+        return known[element]
+
+    if count(tree) > MAX_ELEMENTS:
+        raise FormatError(f"more than {MAX_ELEMENTS} elements, or one that uses itself")
+
+
 def _seen(text: bytes) -> bytes:
-    """The drawing without what its parser would show: what stands in a group of no opacity or display, and symbols
-    outside of defs. What a group hides so no child can show again, whatever is said of the child itself.
+    """The drawing without what its parser shows although it is hidden.
+
+    That is what stands in a group of no opacity or display, and symbols outside of defs. No child can show again what
+    its group hides, whatever is said of the child itself.
     """
     if not any(word in text for word in (b"opacity", b"display", b"symbol")):
         return text
@@ -101,11 +135,12 @@ def _seen(text: bytes) -> bytes:
 
 
 def _is_none(opacity: str) -> bool:
+    """Whether an opacity is 0 or less; what is no number is not."""
     return bool(re.fullmatch(r"[-+]?0*\.?0*%?|-.*", opacity) and re.search("[0-9]", opacity))
 
 
 def _rules(tree: ElementTree.Element) -> list[tuple[str, dict[str, str]]]:
-    """Simple selectors of the drawing's style sheets, a tag, .class, #id or *, and what each says, in their order."""
+    """The rules of style sheets in the drawing, in their order: a selector (a tag, .class, #id or *), declarations."""
     rules = []
     for element in tree.iter():
         if isinstance(element.tag, str) and element.tag.rpartition("}")[2] == "style":
@@ -116,12 +151,16 @@ def _rules(tree: ElementTree.Element) -> list[tuple[str, dict[str, str]]]:
 
 
 def _declared(text: str) -> dict[str, str]:
+    """CSS declarations by their names."""
     pairs = (part.partition(":") for part in text.split(";"))
     return {name.strip(): value.replace("!important", "").strip() for name, _, value in pairs}
 
 
 def _said(element: ElementTree.Element, rules: list[tuple[str, dict[str, str]]], name: str, usual: str) -> str:
-    """What is said of an element itself, by its style, else by id, class or tag in a style sheet, else by attribute."""
+    """The value of a property that an element itself is given.
+
+    Its style comes first, then a style sheet by its id, class or tag, then its attribute, then ``usual``.
+    """
     own = _declared(element.get("style", ""))
     if name in own:
         return own[name]
@@ -134,6 +173,7 @@ def _said(element: ElementTree.Element, rules: list[tuple[str, dict[str, str]]],
 
 
 def _texture(drawing: Any, name: str, pen_pt: float | None, whole: bool, report: Callable[[str], None]) -> Texture:
+    """The texture of a parsed drawing. Raises FormatError."""
     import svgelements
 
     size = [_number(getattr(drawing, side, None)) for side in ("width", "height")]
@@ -159,7 +199,7 @@ def _texture(drawing: Any, name: str, pen_pt: float | None, whole: bool, report:
             chains = [part for control in chains for part in _dashed(control, *pattern)]
         for control in chains:
             strokes.append(control * POINTS_PER_PIXEL)
-            widths.append(pen_pt or (width if width >= 0.0001 else USUAL_PEN_PT))
+            widths.append(pen_pt or (width if width >= LEAST_WIDTH else USUAL_PEN_PT))
             if len(strokes) > MAX_STROKES:
                 raise FormatError(f"more than {MAX_STROKES} strokes")
     parts = [f"{count} {what}{'s' * (count > 1)}" for what, count in left_out.items() if count]
@@ -170,8 +210,8 @@ def _texture(drawing: Any, name: str, pen_pt: float | None, whole: bool, report:
     if said + [clipped] * bool(clipped):
         report("; ".join([*said, *[f"{clipped} clipped, and drawn whole"] * bool(clipped)]))
     points = np.concatenate(strokes)
-    if not (np.abs(points) <= LIMIT).all():
-        raise FormatError(f"a coordinate that is no number, or is beyond ±{LIMIT:.0f} pt")
+    if not (np.abs(points) <= LIMIT).all() or not max(widths) <= LIMIT:
+        raise FormatError(f"a coordinate or a stroke-width that is no number, or is beyond ±{LIMIT:.0f} pt")
     first = np.zeros(len(strokes) + 1, np.int64)
     np.cumsum([len(s) for s in strokes], out=first[1:])
     tile = Strokes(
@@ -181,7 +221,10 @@ def _texture(drawing: Any, name: str, pen_pt: float | None, whole: bool, report:
 
 
 def _paint(element: Any, chains: list[Floats], size: list[float]) -> str:
-    """What leaves ink of a shape, "stroke" or "fill"; or what it is that leaves none."""
+    """The part of a shape that leaves ink, "stroke" or "fill"; or what a shape without ink is called in the report.
+
+    chains: of the shape, in pixels. size: the drawing's width and height, pixels.
+    """
     values = element.values
     if values.get("visibility") in ("hidden", "collapse") or _opacity(values.get("opacity")) <= 0 or not chains:
         return "invisible shape"
@@ -196,13 +239,14 @@ def _paint(element: Any, chains: list[Floats], size: list[float]) -> str:
 
 
 def _colour(paint: Any) -> str:
-    """"ink", "white", or nothing."""
+    """What a paint leaves: "ink", "white", or "" for nothing."""
     if paint is None or paint.value is None or paint.opacity <= 0:
         return ""
     return "white" if min(paint.red, paint.green, paint.blue) >= WHITE else "ink"
 
 
 def _opacity(text: Any) -> float:
+    """An opacity, 1 where it is missing or no number."""
     try:
         text = str(text or 1).strip()
         return float(text[:-1]) / 100 if text.endswith("%") else float(text)
@@ -211,7 +255,7 @@ def _opacity(text: Any) -> float:
 
 
 def _covers(chains: list[Floats], size: list[float]) -> bool:
-    """Whether a shape is one rectangle at most, as large as the drawing."""
+    """Whether a shape of no more than four sides covers the whole drawing, but for a hundredth of it."""
     if len(chains) != 1 or len(chains[0]) > 3 * 4 + 1:
         return False
     low, high = chains[0].min(axis=0), chains[0].max(axis=0)
@@ -220,7 +264,7 @@ def _covers(chains: list[Floats], size: list[float]) -> bool:
 
 
 def _dashes(element: Any) -> tuple[list[float], float] | None:
-    """Lengths of dashes and gaps by turns, and the offset, in pixels; None for a solid line."""
+    """The lengths of dashes and gaps in turn, and the offset, in pixels; None for a solid line."""
     import svgelements
 
     words = re.split(r"[,\s]+", str(element.values.get("stroke-dasharray") or "none").strip())
@@ -238,7 +282,7 @@ def _dashes(element: Any) -> tuple[list[float], float] | None:
 
 
 def _dashed(control: Floats, lengths: list[float], offset: float) -> list[Floats]:
-    """The pieces of a chain of cubics (3k + 1, 2) that dashes leave."""
+    """The dashes of a chain of cubics (3k + 1, 2), each a chain too. Raises FormatError for more than MAX_STROKES."""
     t = np.arange(CHORDS + 1)[:, None] / CHORDS
     segments = [control[k : k + 4] for k in range(0, len(control) - 1, 3)]
     way: list[Floats] = []
@@ -265,7 +309,10 @@ def _dashed(control: Floats, lengths: list[float], offset: float) -> list[Floats
 
 
 def _between(segments: list[Floats], way: list[Floats], ends: Floats, begin: float, end: float) -> Floats:
-    """The part of a chain between two lengths along it; a dot where they are one."""
+    """The part of a chain between two lengths along it; a dot where they are equal.
+
+    segments: (4, 2) control points each. way: the length at the ends of each one's chords. ends: at each one's ends.
+    """
     points: list[Floats] = []
     for i, segment in enumerate(segments):
         if end < ends[i] or begin > ends[i + 1] or (begin == ends[i + 1] and begin < end):
@@ -289,6 +336,7 @@ def _between(segments: list[Floats], way: list[Floats], ends: Floats, begin: flo
 
 
 def _number(value: Any) -> float:
+    """A number, 0 for what is none."""
     try:
         return float(value)
     except (TypeError, ValueError):

@@ -5,14 +5,18 @@ One JSON text::
     {"format": "penink-texture", "version": 1, "name": "dashes", "width": 144, "height": 144,
      "strokes": [{"priority": 0, "width": 0.4, "points": [[0, 8], [12, 8], [24, 9], [36, 9]]}]}
 
-Strokes of lower priority are drawn first. ``"whole": true`` says that strokes are never shortened;
-``"layers"`` says that the tile is an instance of plain hatching, which can then be laid without a tile;
-``"oriented": true`` that it is no tile but a set of examples, which are bent along a field of directions.
+Strokes of lower priority are drawn first. ``"whole": true`` says that strokes are never shortened.
+``"layers"`` says that the tile is an instance of plain hatching, which can also be laid without it.
+``"oriented": true`` says that there is no tile but a set of examples, which are bent along a field of directions.
 See README.md beside this file and schemas/texture.schema.json.
+
+Numbers are written with DECIMALS or COORDINATES decimals. What has to hold between two of them is checked of the
+rounded ones, so that a texture that was read can be written and read again.
 """
 
 from __future__ import annotations
 
+import io
 import json
 import re
 from itertools import chain
@@ -23,9 +27,10 @@ import numpy as np
 from penink_cli.formats import strict_json
 from penink_cli.formats.strokes import LIMIT, Sink
 from penink_cli.ground.decimals import plain
-from penink_cli.ground.errors import FormatError
+from penink_cli.ground.errors import FormatError, ParameterError
 from penink_cli.ground.model import Engraving, Floats, HatchLayer, Ints, Scales, Strokes, Texture
 
+DECIMALS, COORDINATES = 4, 3  # decimals as written: of numbers, of coordinates and sides
 MAX_BYTES = 64 << 20
 MAX_EXAMPLES = 1000  # of a set of oriented strokes
 LEAST_EXAMPLE, MOST_EXAMPLE = 1.0, 250.0  # how far they lead along x, points
@@ -54,9 +59,10 @@ MOST_SCALE = 1000.0
 #: The hatchings that may fill a texture that grows.
 FILLS = ("parallel", "crosshatch")
 _NEEDED = ("angle", "from", "to", "pen")
-LEAST_WIDTH = 0.0001
+LEAST_WIDTH = 0.0001  # of strokes, points
+LEAST_SIDE = 0.01  # of a tile, points
 
-# The strokes as `write` writes them, at the end of the text.
+# Where the strokes begin and end in the text that `write` writes: they are its last member.
 _STROKES = re.compile(rb',[ \t\r\n]*"strokes"[ \t\r\n]*:[ \t\r\n]*\[')
 _END = re.compile(rb"[ \t\r\n]*\}[ \t\r\n]*")
 #: Priorities, widths, numbers of points and the points of all strokes.
@@ -64,7 +70,7 @@ Listed = tuple[Floats, Floats, Ints, Floats]
 
 
 def read(stream: BinaryIO, source: str) -> Texture:
-    """Read a texture; raises FormatError that names the stroke or layer at fault."""
+    """The texture of a file. Raises FormatError, which names the stroke or layer at fault."""
     text = stream.read(MAX_BYTES + 1)
     try:
         if len(text) > MAX_BYTES:
@@ -78,9 +84,10 @@ def read(stream: BinaryIO, source: str) -> Texture:
 
 
 def _plain(text: bytes) -> tuple[bytes, Listed | None]:
-    """The text with empty lines for its strokes, and these; the text itself and None where they are not plain.
+    """The text without its strokes, whose lines stay as empty ones, and the strokes; None for strokes not plain.
 
-    Thousands of strokes are read in a twentieth of the time and of the memory that json needs for them.
+    Where they are not plain, the text is returned as it is, for json. Plain strokes are read in a twentieth of the time
+    and of the memory that json needs.
     """
     from penink_cli.formats._compiled import plain_json as _plain_json
 
@@ -93,20 +100,16 @@ def _plain(text: bytes) -> tuple[bytes, Listed | None]:
     after, n, used = _plain_json.prioritized(text, mark.end(), LIMIT, LEAST_WIDTH, points, counts, priorities, widths)
     if after < 0 or not _END.fullmatch(text, after):
         return text, None
-    lines = b"\n" * text.count(b"\n", mark.end(), after)  # so that what else is wrong is found in its line
+    lines = b"\n" * text.count(b"\n", mark.end(), after)  # an error elsewhere then has the right line number
     return text[: mark.end()] + lines + text[after - 1 :], (priorities[:n], widths[:n], counts[:n], points[:used])
 
 
 def _texture(document: dict[str, Any], listed: Listed | None) -> Texture:
-    """The texture of a file; listed: its strokes, where they have been read already."""
+    """The texture of a file; listed: its strokes, None where they are still in the document. Raises FormatError."""
     name = strict_json.text(strict_json.member(document, "name"), "name")
-    width, height = (_size(strict_json.member(document, side), side) for side in ("width", "height"))
-    whole = document.get("whole", False)
-    if type(whole) is not bool:
-        raise FormatError(f"whole is {strict_json.quoted(whole)}; true or false is needed")
-    oriented = document.get("oriented", False)
-    if type(oriented) is not bool:
-        raise FormatError(f"oriented is {strict_json.quoted(oriented)}; true or false is needed")
+    width, height = (_size(strict_json.member(document, side), side, LEAST_SIDE) for side in ("width", "height"))
+    whole = strict_json.flag(document.get("whole", False), "whole")
+    oriented = strict_json.flag(document.get("oriented", False), "oriented")
     items = strict_json.array(strict_json.member(document, "strokes"), "strokes")
     if not items and listed is None:
         raise FormatError("strokes is empty; a texture has at least one")
@@ -129,7 +132,7 @@ def _texture(document: dict[str, Any], listed: Listed | None) -> Texture:
 
 
 def _spans(items: list[Any]) -> Floats:
-    """(s, 2) from which scale to which each stroke is there; NaN for those that do not grow."""
+    """(s, 2) the scales from and to which each stroke is there, NaN for one that does not grow. Raises FormatError."""
     spans = np.full((len(items), 2), np.nan)
     for i, item in enumerate(items):
         if "scale" not in item:
@@ -139,19 +142,18 @@ def _spans(items: list[Any]) -> Floats:
         if len(pair) != 2:
             raise FormatError(f"{place} has {len(pair)} numbers; from and to are needed")
         low, high = (strict_json.number(value, place, 0.0, MOST_SCALE) for value in pair)
-        if not low < high:
-            raise FormatError(f"{place} is from {low:g} to {high:g}; the first must be less")
+        if not _less(low, high):
+            raise FormatError(f"{place} is from {low:g} to {high:g}; to {DECIMALS} decimals the first must be less")
         spans[i] = low, high
     return spans
 
 
 def _scaling(laid: Texture, scales: Any, spans: Floats) -> Texture:
-    """The texture that grows: `laid` holds all its strokes."""
-    if not isinstance(scales, dict):
-        raise FormatError(f"scales is {strict_json.quoted(scales)}; an object is needed")
+    """The texture that grows. laid: all its strokes; spans: (s, 2), as of `_spans`. Raises FormatError."""
+    scales = strict_json.members(scales, "scales")
     if laid.layers or laid.engraving is not None or laid.oriented:
         raise FormatError("scales go with a plain tile: no layers, no engraving, not oriented")
-    natural = _size(strict_json.member(scales, "natural", "scales"), "scales: natural")
+    natural = _size(strict_json.member(scales, "natural", "scales"), "scales: natural", LEAST_SIDE)
     least = strict_json.number(scales.get("least", 0.0), "scales: least", 0.0, LIMIT)
     fill = strict_json.text(scales.get("fill", FILLS[0]), "scales: fill")
     if fill not in FILLS:
@@ -175,17 +177,17 @@ def _check_set(strokes: Strokes, layers: tuple[HatchLayer, ...]) -> None:
     if len(strokes) > MAX_EXAMPLES:
         raise FormatError(f"{len(strokes)} oriented strokes; {MAX_EXAMPLES} are allowed")
     for i in range(len(strokes)):
-        x = strokes[i][:, 0]
-        if not LEAST_EXAMPLE <= x[-1] - x[0] <= MOST_EXAMPLE:
-            on = f"{x[-1] - x[0]:g} pt on; from {LEAST_EXAMPLE:g} to {MOST_EXAMPLE:g} along x are needed"
+        first, last = (round(float(x), COORDINATES) for x in strokes[i][[0, -1], 0])
+        if not LEAST_EXAMPLE <= round(last - first, COORDINATES) <= MOST_EXAMPLE:
+            on = f"{last - first:g} pt on; from {LEAST_EXAMPLE:g} to {MOST_EXAMPLE:g} along x are needed"
             raise FormatError(f"oriented stroke {i}, by priority, leads {on}")
 
 
 def _strokes(items: list[Any]) -> Listed:
-    """The strokes of a file that is not plain.
+    """The strokes of a file that is not plain. Raises FormatError.
 
-    Values are looked at all at once; only where something is wrong one by one, to say which. 15 000 strokes of
-    ten points take 90 ms so, and half a second otherwise.
+    All values are checked at once, and one by one only to name the one that is wrong. 15 000 strokes of ten points take
+    90 ms so, and half a second one by one.
     """
     try:
         priorities = strict_json.numbers([item["priority"] for item in items], "", "")
@@ -200,8 +202,7 @@ def _strokes(items: list[Any]) -> Listed:
         pass
     for i, item in enumerate(items):
         place = f"stroke {i}"
-        if not isinstance(item, dict):
-            raise FormatError(f"{place} is {strict_json.quoted(item)}; an object is needed")
+        item = strict_json.members(item, place)
         strict_json.number(strict_json.member(item, "priority", place), f"{place}: priority")
         _size(strict_json.member(item, "width", place), f"{place}: width")
         control = strict_json.pairs(strict_json.member(item, "points", place), f"{place}: points", f"{place}: point")
@@ -212,17 +213,20 @@ def _strokes(items: list[Any]) -> Listed:
     raise AssertionError("unreachable: one of the strokes is wrong")
 
 
-def _size(value: Any, what: str) -> float:
-    size = strict_json.number(value, what, 0.0, LIMIT)
-    if size < LEAST_WIDTH:
-        raise FormatError(f"{what} is {strict_json.quoted(value)}; a number from {LEAST_WIDTH} is needed")
-    return size
+def _size(value: Any, what: str, least: float = LEAST_WIDTH) -> float:
+    """A length from ``least`` to LIMIT. Raises FormatError, in which ``what`` names it."""
+    return strict_json.number(value, what, least, LIMIT)
+
+
+def _less(one: float, other: float) -> bool:
+    """Whether one number is less than another as they are written."""
+    return round(one, DECIMALS) < round(other, DECIMALS)
 
 
 def _layer(value: Any, i: int) -> HatchLayer:
+    """The layer at that place of the list. Raises FormatError."""
     place = f"layer {i}"
-    if not isinstance(value, dict):
-        raise FormatError(f"{place} is {strict_json.quoted(value)}; an object is needed")
+    value = strict_json.members(value, place)
     for name in _NEEDED:
         strict_json.member(value, name, place)
     layer = HatchLayer(
@@ -232,19 +236,19 @@ def _layer(value: Any, i: int) -> HatchLayer:
             if name in value
         }
     )
-    if not layer.low < layer.high:
-        raise FormatError(f'{place}: "from" is {layer.low:g} and "to" {layer.high:g}; "from" must be less')
-    if layer.wave_pt > 0 and layer.wave_length_pt < 4 * layer.wave_pt:
+    if not _less(layer.low, layer.high):
+        found = f'"from" is {layer.low:g} and "to" {layer.high:g}'
+        raise FormatError(f'{place}: {found}; to {DECIMALS} decimals "from" must be less')
+    if round(layer.wave_length_pt, DECIMALS) < 4 * round(layer.wave_pt, DECIMALS):
         raise FormatError(f"{place}: a wave of {layer.wave_pt:g} pt needs a wave_length of at least four times that")
     return layer
 
 
 def _engraving(value: Any) -> Engraving | None:
-    """The lines that swell, where the texture has them."""
+    """What the texture says of lines that swell; None where it says nothing. Raises FormatError."""
     if value is None:
         return None
-    if not isinstance(value, dict):
-        raise FormatError(f"engraving is {strict_json.quoted(value)}; an object is needed")
+    value = strict_json.members(value, "engraving")
     found: dict[str, Any] = {
         field: strict_json.number(value[name], f"engraving: {name}", least, most)
         for name, (field, least, most) in _ENGRAVING.items()
@@ -252,47 +256,54 @@ def _engraving(value: Any) -> Engraving | None:
     }
     for name in ("along", "blunt"):
         if name in value:
-            if type(value[name]) is not bool:
-                raise FormatError(f"engraving: {name} is {strict_json.quoted(value[name])}; true or false is needed")
-            found[name] = value[name]
+            found[name] = strict_json.flag(value[name], f"engraving: {name}")
     if "centre" in value:
         ((x, y),) = strict_json.pairs([value["centre"]], "engraving: centre", "engraving: centre").tolist()
         if not max(abs(x), abs(y)) <= 100:
             raise FormatError("engraving: centre is beyond 100 times the sheet")
         found["centre"] = (x, y)
     if "lines" in value:
-        lines = value["lines"]
-        if type(lines) is not int or not 1 <= lines <= MOST_LINES:
-            raise FormatError(
-                f"engraving: lines is {strict_json.quoted(lines)}; a whole number from 1 to {MOST_LINES} is needed"
-            )
-        found["lines"] = lines
+        found["lines"] = strict_json.whole(value["lines"], "engraving: lines", 1, MOST_LINES)
     engraving = Engraving(**found)
-    if not engraving.finest_pt < engraving.spacing_pt:
-        raise FormatError(
-            f"engraving: finest is {engraving.finest_pt:g} and spacing {engraving.spacing_pt:g}; finest must be less"
-        )
+    if not _less(engraving.finest_pt, engraving.spacing_pt):
+        sizes = f"finest is {engraving.finest_pt:g} and spacing {engraving.spacing_pt:g}"
+        raise FormatError(f"engraving: {sizes}; to {DECIMALS} decimals finest must be less")
     return engraving
 
 
 def _engraving_text(engraving: Engraving) -> str:
-    """The member of the file."""
-    members = [(name, plain(getattr(engraving, field), 4)) for name, (field, _, _) in _ENGRAVING.items()]
-    if engraving.crosses == 1:
-        members.pop()
+    """The engraving as JSON. ``crosses`` is written only where it says that lines cross."""
+    members = [
+        (name, plain(getattr(engraving, field), DECIMALS))
+        for name, (field, _, _) in _ENGRAVING.items()
+        if name != "crosses" or engraving.crosses < 1
+    ]
     members += [(name, json.dumps(getattr(engraving, name))) for name in ("along", "blunt")]
     if engraving.centre is not None:
-        members.append(("centre", "[{}, {}]".format(*(plain(v, 4) for v in engraving.centre))))
+        members.append(("centre", "[{}, {}]".format(*(plain(v, DECIMALS) for v in engraving.centre))))
     if engraving.lines is not None:
         members.append(("lines", str(engraving.lines)))
     return "{" + ", ".join(f'"{name}": {text}' for name, text in members) + "}"
 
 
 def write(out: Sink, texture: Texture) -> None:
-    """Write a texture, one stroke a line; coordinates in thousandths of a point."""
+    """Write a texture, one stroke a line.
+
+    Raises ParameterError for a texture that, rounded, could not be read again.
+    """
+    text = _text(texture)
+    try:
+        read(io.BytesIO(text), texture.name)
+    except FormatError as error:
+        raise ParameterError(f"a texture that no file can hold: {error.message}") from None
+    out.write(text)
+
+
+def _text(texture: Texture) -> bytes:
+    """The file of a texture. Raises ParameterError for a name that is not UTF-8."""
     s = texture.strokes
-    head = f'{{"format": "penink-texture", "version": 1, "name": {json.dumps(texture.name)}'
-    head += f', "width": {plain(s.width, 3)}, "height": {plain(s.height, 3)}'
+    head = f'{{"format": "penink-texture", "version": 1, "name": {strict_json.written(texture.name, "name")}'
+    head += f', "width": {plain(s.width, COORDINATES)}, "height": {plain(s.height, COORDINATES)}'
     if texture.whole:
         head += ', "whole": true'
     if texture.oriented:
@@ -304,7 +315,7 @@ def write(out: Sink, texture: Texture) -> None:
             return [(name, value) for name, value in values if value is not None]
 
         layers = ",\n  ".join(
-            "{" + ", ".join(f'"{name}": {plain(value, 4)}' for name, value in members(layer)) + "}"
+            "{" + ", ".join(f'"{name}": {plain(value, DECIMALS)}' for name, value in members(layer)) + "}"
             for layer in texture.layers
         )
         head += f', "layers": [\n  {layers}]'
@@ -312,24 +323,25 @@ def write(out: Sink, texture: Texture) -> None:
         head += f', "engraving": {_engraving_text(texture.engraving)}'
     if texture.scales is not None:
         scales = texture.scales
-        head += f', "scales": {{"natural": {plain(scales.natural_pt, 3)}, "least": {plain(scales.least_pt, 3)}'
-        head += f', "fill": {json.dumps(scales.fill)}}}'
-    out.write((head + ', "strokes": [\n').encode("ascii"))
+        natural, least = (plain(size, COORDINATES) for size in (scales.natural_pt, scales.least_pt))
+        head += f', "scales": {{"natural": {natural}, "least": {least}, "fill": {json.dumps(scales.fill)}}}'
     lines = _stroke_lines(s, texture.priorities)
     if texture.scales is not None:
         fixed = [(float(p), line) for p, line, f in zip(texture.priorities, lines, texture.scales.fixed) if f]
         grown = _stroke_lines(texture.scales.strokes, texture.scales.priorities, texture.scales.spans)
         both = [*fixed, *zip(texture.scales.priorities.tolist(), grown, strict=True)]
         lines = [line for _, line in sorted(both, key=lambda item: item[0])]
-    out.write((",\n".join(lines) + "\n]}\n").encode("ascii"))
+    return (head + ', "strokes": [\n' + ",\n".join(lines) + "\n]}\n").encode("ascii")
 
 
 def _stroke_lines(strokes: Strokes, priorities: Floats, spans: Floats | None = None) -> list[str]:
+    """Strokes as JSON, one text each; spans: (s, 2), as of `_spans`, for strokes that grow."""
     lines = []
     for i in range(len(strokes)):
-        control = ", ".join(f"[{plain(x, 3)}, {plain(y, 3)}]" for x, y in strokes[i].tolist())
-        line = f' {{"priority": {plain(float(priorities[i]), 4)}, "width": {plain(float(strokes.widths[i]), 4)}'
+        control = ", ".join(f"[{plain(x, COORDINATES)}, {plain(y, COORDINATES)}]" for x, y in strokes[i].tolist())
+        priority, width = (plain(float(v), DECIMALS) for v in (priorities[i], strokes.widths[i]))
+        line = f' {{"priority": {priority}, "width": {width}'
         if spans is not None:
-            line += ', "scale": [{}, {}]'.format(*(plain(float(v), 4) for v in spans[i]))
+            line += ', "scale": [{}, {}]'.format(*(plain(float(v), DECIMALS) for v in spans[i]))
         lines.append(line + f', "points": [{control}]}}')
     return lines

@@ -81,7 +81,7 @@ class PixelWindow(click.ParamType):
 
 
 def plain_number(value: Any) -> float:
-    """The number that ASCII digits say, NaN for what is none; Python's own ``1_0`` and ``١`` are typing errors."""
+    """A number in ASCII, NaN for anything else; ``1_0`` and ``١``, which Python takes, are typing errors."""
     try:
         return float(value) if re.fullmatch(r"[-+.0-9a-zA-Z]*", str(value)) else math.nan
     except ValueError:
@@ -125,6 +125,24 @@ WINDOW = PixelWindow()
 POSITIVE = Finite(above=0)
 
 
+class Text(click.ParamType):
+    """A text that goes into a file: it must be UTF-8, as files are."""
+
+    name = "text"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> str:
+        """The text as given."""
+        text = str(value)
+        try:
+            text.encode("utf-8")
+        except UnicodeEncodeError:  # Python's stand-in for a byte that is not UTF-8
+            self.fail(f"{in_quotes(text)} is not UTF-8", param, ctx)
+        return text
+
+
+TEXT = Text()
+
+
 class OutputFile(click.Path):
     """A file to be written; every other path that a subcommand takes is read."""
 
@@ -133,19 +151,19 @@ class OutputFile(click.Path):
 
 
 def is_file(name: str) -> bool:
-    """Whether what stands for a shipped thing or a file is a file: it has a dot or a slash in it, or is ``-``."""
+    """Whether a name is a file's and not a shipped texture's or style's: it has a dot or a slash, or is ``-``."""
     return name == "-" or "/" in name or "." in name
 
 
 class NameOrFile(click.Path):
-    """One of the things that come with the program, by its name, or a file of that kind; shells complete both."""
+    """A texture or style that comes with the program, by its name, or a file; shells complete both."""
 
     def __init__(self, names: Callable[[], Iterable[str]]):
         super().__init__(allow_dash=True)
         self.names = names
 
     def shell_complete(self, ctx: click.Context, param: click.Parameter, incomplete: str) -> list[CompletionItem]:
-        """The names that begin so, and files: bash offers those where no name does."""
+        """The names that begin as the word does, and files, which bash offers only where no name fits."""
         from click.shell_completion import CompletionItem
 
         found = [CompletionItem(name) for name in self.names() if name.startswith(incomplete)]
@@ -153,7 +171,7 @@ class NameOrFile(click.Path):
 
 
 def _keeping_inputs(function: F) -> F:
-    """The subcommand, which refuses to overwrite what it reads before it reads anything."""
+    """The subcommand, made to refuse an output that is one of its inputs before anything is read."""
 
     @functools.wraps(function)
     def checked(*arguments: Any, **values: Any) -> Any:
@@ -193,10 +211,10 @@ def filter_options(function: F) -> F:
 
 
 def output_options(function: F) -> F:
-    """-o, --max-pixels, --quiet, -h: for a subcommand whose inputs are its own affair.
+    """-o, --max-pixels, --quiet, -h: what every subcommand has, whatever it reads.
 
-    Its files are of click's type Path, but for those it writes, which are of `OutputFile`: by that it is known
-    which must not be the same.
+    A parameter that is a file to be read must be of click's type Path, one to be written of `OutputFile`: by these
+    types an output that is an input is refused.
     """
     function = _keeping_inputs(function)
     for decorate in (
@@ -225,7 +243,7 @@ def printer_option(
     says: str = "Resolution of the printer, which paints every dot that a stroke touches; "
     "none for plotters and screens.",
 ) -> Callable[[F], F]:
-    """--device-dpi of what lays strokes for a printer."""
+    """--device-dpi of subcommands that lay strokes for a printer; says: the help text."""
     return click.option("--device-dpi", type=DeviceDpi(), default="600", show_default=True, metavar="N|none", help=says)
 
 
@@ -255,7 +273,7 @@ def directions_option(required: bool) -> Callable[[F], F]:
 
 
 def _limit_threads(ctx: click.Context, _: click.Parameter, threads: int | None) -> int | None:
-    """Tell all that runs within this command, whether it takes a number of threads or not."""
+    """Limit the threads of all that runs within this command, also of what takes no number of threads."""
     if threads is not None:
         from penink_cli.ground import threads as threading
 
@@ -278,7 +296,7 @@ verbose_option = click.option(
 
 
 def reporter(verbose: bool) -> Callable[[str], None]:
-    """What takes lines for --verbose: to standard error, or nowhere."""
+    """A function that takes lines for --verbose: to standard error, or nowhere."""
     return _said if verbose else (lambda line: None)
 
 
@@ -286,12 +304,12 @@ def _said(line: str) -> None:
     in_turn(functools.partial(click.echo, line, err=True))
 
 
-_warned: set[str] | None = None  # what has been warned of, where each thing is said once
+_warned: set[str] | None = None  # what has been warned of, within `warning_once`
 
 
 @contextlib.contextmanager
 def warning_once() -> Iterator[None]:
-    """While the block runs, what several filters of one process have to warn of is said by the first."""
+    """While the block runs, a warning that several filters of one process would give is given by the first alone."""
     global _warned  # noqa: PLW0603
     before, _warned = _warned, set()
     try:
@@ -301,9 +319,9 @@ def warning_once() -> Iterator[None]:
 
 
 def warn(line: str, about: str | None = None) -> None:
-    """A line on standard error, with the command's name: the result is right, but perhaps not what was meant.
+    """A line on standard error, with the command's name: the result is as asked for, but perhaps not as meant.
 
-    about: what the line is about, where filters say it in different words.
+    about: names the subject for `warning_once`, where filters word the same warning in different ways.
     """
     context = click.get_current_context(silent=True)
     program = context.command_path if context else "penink"
@@ -319,7 +337,7 @@ def warn(line: str, about: str | None = None) -> None:
 
 
 def processors() -> int:
-    """Processors this process may run on: the default of --threads."""
+    """How many processors this process may run on: the default of --threads."""
     from penink_cli.ground import threads
 
     return threads.count(None)

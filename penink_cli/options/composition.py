@@ -59,7 +59,7 @@ class Target(click.ParamType):
 
 
 def composition_options(function: F) -> F:
-    """--strength, --detail, --mix, --target, --mask, --vignette: `draw` has them too."""
+    """--strength, --detail, --mix, --target, --mask and --vignette, of `compose` and `draw`."""
     for decorate in (
         click.option(
             "--vignette",

@@ -1,4 +1,4 @@
-"""Inks by the options of `separate` and `draw`: which, on which paper, and the plate of each."""
+"""The options of `separate` and `draw` that say which inks a picture is printed in, and each ink's plate."""
 
 from __future__ import annotations
 
@@ -20,18 +20,18 @@ if TYPE_CHECKING:
 F = TypeVar("F", bound=Callable[..., Any])
 
 LEAST_INKS, MOST_INKS = 2, 6
-BLACK_SHARE = 0.8
+BLACK_SHARE = 0.8  # of the grey in a colour, that black ink prints
 
 
 @dataclass(frozen=True)
 class Inks:
-    """Colours, and what each is called."""
+    """The colours of inks on white paper, and their names."""
 
     colours: tuple[Colour, ...]
     names: tuple[str, ...]
 
     def number(self, plate: str) -> int:
-        """The place of an ink by its name, its place from 1, or its colour; UsageError for any other."""
+        """The place, from 0, of an ink given by its name, its place from 1, or its colour. Raises UsageError."""
         if plate.lower() in self.names:
             return self.names.index(plate.lower())
         if plate.isascii() and plate.isdigit() and 1 <= int(plate[:3]) <= len(self.names):
@@ -110,7 +110,7 @@ def inks_options(function: F) -> F:
 
 
 def refuse_without_plate() -> None:
-    """Raise UsageError for an option that says something of plates only."""
+    """Raise UsageError where an option is given that concerns plates only."""
     context = click.get_current_context()
     for name, word in (("inks", "inks"), ("paper_colour", "paper-color"), ("black", "black")):
         if context.get_parameter_source(name) is not ParameterSource.DEFAULT:
@@ -118,10 +118,10 @@ def refuse_without_plate() -> None:
 
 
 def separated(file: str | None, max_pixels: int, inks: Inks, paper: Colour, black: float) -> list[GreyImage]:
-    """The plate of each ink: grey that is white where there is none of it."""
+    """The plate of each ink: grey, white where there is no ink, black where it is solid."""
     from penink_cli.composition import separation
     from penink_cli.ground.model import GreyImage as Grey
-    from penink_cli.options.inputs import read_colours
+    from penink_cli.options.photographs import read_colours
 
     photo = read_colours(file, max_pixels)
     return [
@@ -131,7 +131,7 @@ def separated(file: str | None, max_pixels: int, inks: Inks, paper: Colour, blac
 
 
 def inverted(plate: GreyImage) -> GreyImage:
-    """All that the plate leaves out of solid ink."""
+    """The plate that makes up this one to solid ink."""
     from penink_cli.ground.model import GreyImage as Grey
 
     return Grey(plate.maxval - plate.values, plate.maxval)

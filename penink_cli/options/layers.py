@@ -1,4 +1,4 @@
-"""What the to-* subcommands share: strokes files, each a layer; paper; colour; the order for a pen."""
+"""What the to-* subcommands share: strokes files as layers, the page, colours, the order for a pen."""
 
 from __future__ import annotations
 
@@ -63,14 +63,13 @@ class PaperName(click.ParamType):
 
 COLOUR = Colour()
 
+
 class Place(click.ParamType):
     """``X,Y``, two lengths."""
 
     name = "X,Y"
 
-    def convert(
-        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
-    ) -> tuple[float, float]:
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> tuple[float, float]:
         """x and y, points."""
         if isinstance(value, tuple):
             return value
@@ -124,7 +123,7 @@ colour_option = click.option(
 
 
 class Gain(DeviceDpi):
-    """Dots per inch of the printer whose gain is drawn, 0 for ``none``."""
+    """Dots per inch of the printer as whose the strokes are drawn, 0 for ``none``."""
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
         """The resolution, 0 for ``none``."""
@@ -132,7 +131,7 @@ class Gain(DeviceDpi):
 
 
 def gain_option(function: F) -> F:
-    """--device-dpi, for outputs that add nothing to a stroke's width."""
+    """--device-dpi of outputs that do not widen strokes by themselves, as a printer does."""
     return click.option(
         "--device-dpi",
         type=Gain(),
@@ -143,7 +142,7 @@ def gain_option(function: F) -> F:
 
 
 def travel_options(function: F) -> F:
-    """--order, --join, --pen, and what the time that a plotter takes depends on."""
+    """--order, --join, --pen, and --speed, --travel-speed, --accel, --lift: the plotter whose time is estimated."""
     for decorate in (
         click.option(
             "--lift",
@@ -195,7 +194,10 @@ def travel_options(function: F) -> F:
 def plotter_of(
     speed: float | None, travel_speed: float | None, accel: float | None, lift: float | None
 ) -> Plotter:
-    """The plotter whose time is said; an AxiDraw but for what is given, lengths in points."""
+    """The plotter whose time is estimated: an AxiDraw, with the values that are given.
+
+    speed, travel_speed: points a second with the pen down and up. accel: points a second, each second. lift: seconds.
+    """
     from penink_cli.travel.clock import MM, Motion, Plotter
 
     usual = Plotter()
@@ -205,7 +207,10 @@ def plotter_of(
 
 
 def read_layers(files: Sequence[str]) -> list[Strokes]:
-    """The layers, the first at the bottom; no file is standard input."""
+    """Strokes files as layers, the first at the bottom; no files mean standard input.
+
+    Raises UsageError for standard input twice, FormatError and LimitError.
+    """
     from penink_cli.formats import strokes
 
     paths = list(files) or ["-"]
@@ -219,7 +224,10 @@ def read_layers(files: Sequence[str]) -> list[Strokes]:
 
 
 def as_printed(layers: Sequence[Strokes], device_dpi: float | None) -> list[Strokes]:
-    """The layers with what a printer adds to their width: the one named, 0 for none, or else the one in their file."""
+    """The layers with their strokes as wide as a printer paints them.
+
+    device_dpi: of that printer, 0 for no printer; None for the one that each layer's file names.
+    """
     from penink_cli.ground.device import widened
 
     printers = [layer.device_dpi if device_dpi is None else device_dpi for layer in layers]
@@ -236,7 +244,10 @@ def colours_of(
 
 
 def for_a_pen(layers: Sequence[Strokes], join: float, quiet: bool, by_width: bool = False) -> list[Strokes]:
-    """Each layer ordered, ends that meet joined; by_width: the strokes of one width together, each width by itself."""
+    """Each layer with its strokes in an order of little travel, those whose ends meet joined.
+
+    join: ends so near, points, meet. by_width: order the strokes of each width by themselves, one width after another.
+    """
     from penink_cli.ground.model import Strokes
     from penink_cli.options.progress import progress
     from penink_cli.travel.order import joined, ordered
@@ -252,7 +263,10 @@ def for_a_pen(layers: Sequence[Strokes], join: float, quiet: bool, by_width: boo
 
 
 def travel_report(before: Sequence[Strokes], after: Sequence[Strokes], seconds: float) -> str:
-    """Drawn and travelled length, and the time, in a line."""
+    """A line for the user: drawn and travelled length, and the time.
+
+    before: the layers as they were before they were ordered, or ``after`` where they were not. seconds: the time.
+    """
     from penink_cli.travel.order import drawn_length, travel_length
 
     mm = 25.4 / 72

@@ -1,4 +1,4 @@
-"""All plates of several inks in one call, each into a file of its own."""
+"""--plates: all plates of several inks written in one call, each into a file of its own."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class PlateFiles(OutputFile):
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> str:
         """The name as given."""
         if str(value).count(PLACE) != 1:
-            self.fail(f"{in_quotes(str(value))} has no {PLACE} for the number, or several", param, ctx)
+            self.fail(f"{in_quotes(str(value))} has not just one {PLACE} for the plate's number", param, ctx)
         return str(super().convert(value, param, ctx))
 
 
@@ -40,9 +40,9 @@ def plates_option(function: F) -> F:
 
 
 def names_of(pattern: str, count: int, output: str | None, inputs: Iterable[str | None]) -> list[str]:
-    """The file of each plate; none of them is an input.
+    """The file of each of ``count`` plates.
 
-    Raises UsageError where -o is given too.
+    Raises UsageError where -o is given too, StreamError where one of the files is an input.
     """
     if output is not None:
         raise click.UsageError("--plates names the files, and -o has no use")

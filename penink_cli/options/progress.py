@@ -9,7 +9,7 @@ from contextlib import contextmanager
 
 @contextmanager
 def progress(total: int, label: str, quiet: bool = False) -> Iterator[Callable[[int], None]]:
-    """Yield a function that takes how much more is done, of ``total``.
+    """Yield a function that is called with the amount of work done since its last call, of ``total`` in all.
 
     Silent unless standard error is a terminal. The bar shows the share done and the time left.
     """

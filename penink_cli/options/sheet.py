@@ -1,4 +1,4 @@
-"""The sheet of paper that a command is asked to draw on: what is too large, and what is most likely a mistake."""
+"""The sheet of paper that a command is asked to draw on: which is too large, and which is most likely a mistake."""
 
 from __future__ import annotations
 
@@ -9,21 +9,23 @@ from penink_cli.ground.errors import LimitError, ParameterError
 from penink_cli.ground.papers import MM
 from penink_cli.options.common import warn
 
-PIXELS_PER_PT = 2.0  # of the grey that a sheet is blasted from
-SHEET_PIXELS = 50_000_000  # of that grey, unless --max-pixels says otherwise: 2400 square inches, 4 × 4 feet
-SMALL_PT = 18.0  # a quarter of an inch: who asks for less has most likely forgotten the unit
-THIN_PT = 2.0  # a few strokes have no room on less
+PIXELS_PER_PT = 2.0  # of the grey that a sheet is blasted from, along each axis
+SHEET_PIXELS = 50_000_000  # of that grey, unless --max-pixels is given: 2400 square inches, 4 × 4 feet
+MOST_PT2 = 9600 * 72 * 72  # the area of the largest sheet, square points
+SMALL_PT = 18.0  # a quarter of an inch: with a smaller picture the unit has most likely been forgotten
+THIN_PT = 2.0  # on a narrower picture even a few strokes have no room
 
 
 def check_sheet(width_pt: float, height_pt: float, max_pixels: int | None = None) -> None:
-    """Raise ParameterError for a sheet of no size, and for one that no memory holds; warn of one that shows little.
+    """Raise ParameterError for a sheet of no size or one that is too large; warn of one that shows little.
 
-    max_pixels: --max-pixels, where strokes are to be laid all over the sheet, which takes memory and time by its area.
+    max_pixels: the value of --max-pixels where strokes are laid all over the sheet, which takes memory and time by its
+    area; None where they are not. Raises LimitError as `check_area` does.
     """
     if not (0.01 <= width_pt <= 144_000 and 0.01 <= height_pt <= 144_000):
         raise ParameterError(f"{width_pt:g} × {height_pt:g} pt on paper; from 0.01 to 144000 is allowed each way")
-    if width_pt * height_pt > 60 * 40 * 5184 * 4:
-        raise ParameterError(f"{width_pt:g} × {height_pt:g} pt on paper; 9600 square inches are allowed")
+    if width_pt * height_pt > MOST_PT2:
+        raise ParameterError(f"{width_pt:g} × {height_pt:g} pt on paper; {MOST_PT2 // 5184} square inches are allowed")
     if max_pixels is not None:
         check_area(width_pt, height_pt, max_pixels)
     if max(width_pt, height_pt) < SMALL_PT or min(width_pt, height_pt) < THIN_PT:
@@ -32,7 +34,7 @@ def check_sheet(width_pt: float, height_pt: float, max_pixels: int | None = None
 
 
 def check_area(width_pt: float, height_pt: float, max_pixels: int) -> None:
-    """Raise LimitError for a sheet whose area takes too much memory and time: by --max-pixels, else `SHEET_PIXELS`."""
+    """Raise LimitError for a sheet that is blasted from too many pixels: --max-pixels if given, else SHEET_PIXELS."""
     context = click.get_current_context(silent=True)
     if context and context.get_parameter_source("max_pixels") is ParameterSource.DEFAULT:
         max_pixels = SHEET_PIXELS

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from penink_cli.formats.style import Style
 
 ENDING = ".style.json"
-_FOLDER = os.path.dirname(styles.__file__)  # `importlib.resources` takes longer to load than all the rest of this
+_FOLDER = os.path.dirname(styles.__file__)  # `importlib.resources` takes longer to load than all else here
 
 
 def shipped() -> list[str]:
@@ -27,7 +27,7 @@ STYLE = NameOrFile(shipped)
 
 
 def style_text(name: str) -> bytes:
-    """The file of a shipped style, as it is. Raises ParameterError, which names those that there are."""
+    """The file of a shipped style. Raises ParameterError, which names those that there are."""
     if name not in shipped():
         raise ParameterError(f"no style {printable(name, 60)}; known are {', '.join(shipped())}, or give a file")
     with open(os.path.join(_FOLDER, name + ENDING), "rb") as file:
@@ -35,9 +35,9 @@ def style_text(name: str) -> bytes:
 
 
 def find_style(name: str) -> Style:
-    """The style of that name, or in that file (a name with a dot or a slash in it, or ``-``).
+    """The shipped style of that name, or the one in that file (see `is_file`).
 
-    Raises ParameterError, which names those that there are, and FormatError for a file.
+    Raises ParameterError for an unknown name and FormatError for a file.
     """
     from penink_cli.formats import style
 

@@ -45,15 +45,20 @@ texture_option = click.option(
 
 
 def find_texture(name: str) -> Texture:
-    """The texture of that name, or in that file (a name with a dot or a slash in it, or ``-``).
+    """The shipped texture of that name, or the one in that file (see `is_file`).
 
-    Raises ParameterError, which names those that there are, and FormatError for a file.
+    Raises ParameterError for an unknown name and FormatError for a file.
     """
     from penink_cli.formats import texture as texture_format
 
     if is_file(name):
         with reading(name) as stream:
             return texture_format.read(stream, source_name(name))
+    return shipped_texture(name)
+
+
+def shipped_texture(name: str) -> Texture:
+    """The texture of that name that comes with the program. Raises ParameterError, which names those that there are."""
     if name not in shipped():
         raise ParameterError(f"no texture {printable(name, 60)}; known are {', '.join(shipped())}, or give a file")
     return _shipped(name)
@@ -61,19 +66,19 @@ def find_texture(name: str) -> Texture:
 
 @lru_cache(maxsize=2)
 def _shipped(name: str) -> Texture:
-    """A shipped texture, whose files never change: `draw` asks for one several times."""
+    """A shipped texture. `draw` asks for the same one several times, and its file never changes."""
     from penink_cli.formats import texture as texture_format
 
     try:
         with open(os.path.join(os.path.dirname(textures.__file__), "tiles", name + ENDING), "rb") as file:
             packed = file.read()
     except FileNotFoundError:
-        return texture_format.read(io.BytesIO(made(name)), name)  # not packed yet: some seconds
+        return texture_format.read(io.BytesIO(made(name)), name)  # `make manual` has not packed it: some seconds
     return texture_format.read(io.BytesIO(gzip.decompress(packed)), name + ENDING)
 
 
 def made(name: str) -> bytes:
-    """The file of the texture of that kind, made anew."""
+    """The file of the shipped texture of that name, made anew."""
     from penink_cli.formats import texture as texture_format
     from penink_cli.textures.make import make
 

@@ -22,8 +22,8 @@ def look() -> None:
 def watch(do: Callable[[], object]) -> NoReturn:
     """Do it, and again after each change of the files that it reads, until a signal ends the process.
 
-    A file that is being saved is left alone until two looks find it the same. What fails the first time is an error;
-    later it is said in a line, as what is wrong may be half a file, and the next change is waited for.
+    A file that is being saved is left alone until two looks find it the same. An error of the first time is raised. A
+    later one is a line, and the next change is waited for: the file may have been half written.
     """
     with noting() as read:
         do()
@@ -36,18 +36,18 @@ def watch(do: Callable[[], object]) -> NoReturn:
             except PeninkError as error:
                 context = click.get_current_context(silent=True)
                 click.echo(f"{context.command_path if context else 'penink'}: {printable(str(error))}", err=True)
-                files |= _files(read)  # it may not have come to all of them
+                files |= _files(read)  # the error may have come before all files were read
             else:
                 files = _files(read)
 
 
 def _files(read: dict[str, State]) -> dict[str, State]:
-    """Those that are files of the user's, not what filters hand on."""
+    """The files among what was read; the state of an entry of the workbench is its bytes."""
     return {path: state for path, state in read.items() if not isinstance(state, bytes)}
 
 
 def _changed(files: dict[str, State]) -> None:
-    """Wait until files are not as they were, and are the same at two looks."""
+    """Wait until the files are not in these states, and are the same at two looks."""
     before = files
     while True:
         look()

@@ -23,7 +23,7 @@ from scipy.ndimage import gaussian_filter1d
 from penink_cli.blasting.blast import blast
 from penink_cli.formats import archive, illustration, parts
 from penink_cli.ground.model import GreyImage, Illustration, Layer
-from penink_cli.options.inputs import read_illustration
+from penink_cli.options.illustrations import read_illustration
 from penink_cli.options.textures import find_texture
 from penink_cli.selfdrawing import postscript
 from tests.benchmarks.drawing import seen

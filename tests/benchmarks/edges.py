@@ -29,7 +29,7 @@ from penink_cli.arrangement.gradient import noise_level
 from penink_cli.formats import archive, edge_list, illustration, pgm, strokes
 from penink_cli.geometry import validity
 from penink_cli.ground.model import EdgeList, GreyImage, Illustration, Layer, Strokes
-from penink_cli.options.inputs import settled
+from penink_cli.options.illustrations import settled
 from penink_cli.options.textures import find_texture
 from penink_cli.reconstruction.camera import camera_blur
 from penink_cli.reconstruction.enlarge import enlarge, reconstruct

@@ -20,7 +20,7 @@ from penink_cli.formats import archive, edge_list, illustration
 from penink_cli.ground.model import EdgeList, GreyImage, Illustration, Layer, Strokes
 from penink_cli.illustration.drawing import enlarged
 from penink_cli.illustration.layering import layer_strokes
-from penink_cli.options.inputs import read_illustration, settled
+from penink_cli.options.illustrations import read_illustration, settled
 from penink_cli.options.textures import find_texture
 from penink_cli.outputs import postscript
 from penink_cli.outputs.page import lay_out

@@ -151,3 +151,14 @@ def test_a_relative_name_with_a_dash_and_a_file_called_dash(server, inputs, tmp_
     assert server.run(*words, "./-", cwd=tmp_path).out == expected
     assert server.run(*words, "./-", "-o", "./-x", cwd=tmp_path).status == 0
     assert (tmp_path / "-x").read_bytes() == expected
+
+
+def test_a_drawing_of_any_name_makes_a_texture_that_can_be_read(inputs, tmp_path):
+    """The texture is called as its file; a byte that is not UTF-8 becomes a question mark."""
+    drawing = os.path.join(os.fsencode(tmp_path), b"caf\xe9.svg")
+    path = '<path d="M0 0h9" stroke="#000"/>'
+    svg = f'<svg xmlns="http://www.w3.org/2000/svg" width="9" height="9">{path}</svg>'
+    Path(os.fsdecode(drawing)).write_text(svg)
+    made = subprocess.run([*PYTHON, "texture", "import", drawing], check=True, capture_output=True).stdout
+    shown = subprocess.run([*PYTHON, "texture", "show", "-"], input=made, check=True, capture_output=True).stdout
+    assert b"name      caf?\n" in shown

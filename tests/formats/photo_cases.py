@@ -469,6 +469,19 @@ def curves() -> Iterator[Case]:
         luma(COLOUR),
         lines=("profile makes no sense",),
     )
+    for name, numbers in (
+        ("b over a of 0", (1, 2.2, 0.0, 1.0)),
+        ("b over a of 0, and c", (2, 2.2, 0.0, 1.0, 0.1)),
+        ("a gamma below 0", (0, -2.0)),
+        ("a gamma of 0", (0, 0.0)),
+    ):
+        yield Case(
+            "curve",
+            f"PNG: a curve that makes no sense: {name}",
+            saved(COLOUR, "PNG", icc_profile=icc("RGB", [parametric(*numbers)] * 3, SRGB)),
+            luma(COLOUR),
+            lines=("makes no sense",),
+        )
     yield Case(
         "curve",
         "PNG: a profile of inks",

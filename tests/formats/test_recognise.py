@@ -8,7 +8,18 @@ import re
 
 import pytest
 
-from penink_cli.formats import edge_list, illustration, lines, pgm, photo, recognise, strokes, svg_texture, texture
+from penink_cli.formats import (
+    edge_list,
+    illustration,
+    lines,
+    pens,
+    pgm,
+    photo,
+    recognise,
+    strokes,
+    svg_texture,
+    texture,
+)
 from penink_cli.ground.errors import PeninkError
 from penink_cli.main import SUBCOMMANDS
 
@@ -25,6 +36,7 @@ FILES = {
     "edges": manifest("edges", vertices=[], edges=[]),
     "lines": manifest("lines", lines=[]),
     "texture": manifest("texture", name="x", strokes=[]),
+    "pens": manifest("pens", pens=[]),
     "illustration": b"PK\x03\x04\x14\0\0\0\xff",
     "svg": b'<?xml version="1.0"?>\n<svg xmlns="http://www.w3.org/2000/svg"/>\n',
     "page": b"%!PS-Adobe-3.0 EPSF-3.0\n",
@@ -37,6 +49,7 @@ READERS = {
     "edges": lambda data: edge_list.read(io.BytesIO(data), "f"),
     "lines": lambda data: lines.read(io.BytesIO(data), "f"),
     "texture": lambda data: texture.read(io.BytesIO(data), "f"),
+    "pens": lambda data: pens.read(io.BytesIO(data), "f"),
     "illustration": lambda data: illustration.read(data, "f", lambda _: b"", lambda _: None, 100),
     "svg": lambda data: svg_texture.read(io.BytesIO(data), "f", "name"),
 }

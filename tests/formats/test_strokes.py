@@ -266,3 +266,19 @@ def test_what_cannot_be_written_is_refused(wrong):
 def test_a_width_is_never_written_as_nothing():
     s = read(written(Strokes(9, 9, np.zeros((1, 2)), np.array([0, 1]), np.array([1e-9]))))
     assert s.widths[0] > 0
+
+
+@pytest.mark.parametrize("name", ["layer", "texture"])
+def test_a_text_that_is_not_utf8_is_not_written(name):
+    out = io.BytesIO()
+    with pytest.raises(ParameterError, match=f'{name} "a.*udcff" is not UTF-8'):
+        strokes.write(out, Strokes(9, 9, **{name: "a\udcff"}))
+    assert not out.getvalue()
+
+
+@pytest.mark.parametrize("dpi", [1e-6, 0.0004, 0.001, 600.0, 1e7])
+def test_any_printer_that_is_read_is_written_so_that_it_can_be_read(dpi):
+    out = io.BytesIO()
+    strokes.write(out, Strokes(9, 9, device_dpi=dpi))
+    again = strokes.read(io.BytesIO(out.getvalue()), "x").device_dpi
+    assert again == pytest.approx(dpi, abs=0.001)

@@ -155,3 +155,39 @@ def test_one_line_says_what_is_left_out():
     assert imported(INK)[1] == []
     with pytest.raises(FormatError, match="leaves ink in the drawing, only 1 invisible shape"):
         imported(NO_INK["no stroke"])
+
+
+def nested(levels: int) -> str:
+    """Ten to the power of so many lines, by groups that use one another."""
+    groups = [f'<g id="g{i}">' + f'<use xlink:href="#g{i - 1}"/>' * 10 + "</g>" for i in range(1, levels + 1)]
+    return f'<g id="g0">{INK}</g>' + "".join(groups)
+
+
+@pytest.mark.parametrize(
+    ("body", "why"),
+    [
+        (nested(9), "more than 1000000 elements"),
+        (f'<g id="a"><use href="#a"/>{INK}</g>', "one that uses itself"),
+        (f'<g id="a"><use href="#b"/></g><g id="b"><use xlink:href=" #a "/>{INK}</g>', "one that uses itself"),
+        ('<path d="M2 2h6" stroke="#000" stroke-width="1e999"/>', "a stroke-width that is no number"),
+        ('<path d="M2 2h6" stroke="#000" stroke-width="1e30"/>', "a stroke-width that is no number, or is beyond"),
+        ('<path d="M2 2h1e30" stroke="#000"/>', "a coordinate or a stroke-width"),
+    ],
+    ids=["a bomb", "itself", "two by turns", "endless", "too wide", "too far"],
+)
+def test_what_grows_beyond_all_bounds_is_refused(body, why):
+    with pytest.raises(FormatError, match=why):
+        imported(body)
+
+
+def test_what_is_used_several_times_is_drawn_as_often():
+    assert len(imported(nested(1))[0]) == 11
+
+
+@pytest.mark.parametrize("encoding", ["foo", "utf-7", "\u2028"])
+def test_an_encoding_that_is_not_known_is_an_error_of_one_line(encoding):
+    text = f'<?xml version="1.0" encoding="{encoding}"?><svg xmlns="http://www.w3.org/2000/svg"><use/>{INK}</svg>'
+    for drawing in (text, text.replace("<use/>", "")):
+        with pytest.raises(FormatError, match="not SVG") as caught:
+            svg_texture.read(io.BytesIO(drawing.encode()), "a.svg", "a")
+        assert str(caught.value).isprintable()

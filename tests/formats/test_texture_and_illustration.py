@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import io
 import json
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
-from penink_cli.formats import texture
-from penink_cli.ground.errors import PeninkError
+from penink_cli.formats import illustration, texture
+from penink_cli.ground.errors import ParameterError, PeninkError
+from penink_cli.ground.model import Strokes, Texture
 from penink_cli.options.textures import find_texture
 from tests.formats.readers import READERS
 from tests.fuzz.seeds import ILLUSTRATION, TEXTURE
@@ -57,6 +59,15 @@ TEXTURES = {
     "name a number": (tile(name=7), "name is 7; text"),
     "no width": (without(TEXTURE, "width"), '"width" is missing'),
     "width 0": (tile(width=0), "width is 0"),
+    "a width that is written as 0": (tile(width=0.004), "width is 0.004; a number from 0.01"),
+    "from and to that are written as one": (
+        hatch(**{"from": 1e-5, "to": 2e-5}), '"from" is 1e-05 and "to" 2e-05; to 4'),
+    "a wave too short as it is written": (hatch(wave=0.12345, wave_length=0.4938), "a wave of 0.12345 pt needs"),
+    "a finest line that is written as the spacing": (
+        tile(engraving={"finest": 1.45996, "spacing": 1.46}), "to 4 decimals finest must be less"),
+    "a scale that is written as nothing": (
+        tile(scales={"natural": 9}, strokes=[{**STROKE, "scale": [1e-5, 2e-5]}]), "the first must be less"),
+    "a natural width that is written as 0": (tile(scales={"natural": 1e-4}), "natural is 0.0001; a number from 0.01"),
     "width true": (tile(width=True), "width is true"),
     "a negative height": (tile(height=-9), "height is -9"),
     "height beyond the limit": (tile(height=1e8), "height is"),
@@ -195,3 +206,44 @@ def test_what_is_wrong_before_strokes_read_in_bulk_is_told_in_its_line():
     text = text_of(tile()).replace(b"{", b"{\n", 1).replace(b'"whole": false', b'"whole": fals')
     with pytest.raises(PeninkError, match="line 2, column"):
         texture.read(io.BytesIO(text), "t")
+
+
+@pytest.mark.parametrize(
+    ("changed", "why"),
+    [
+        ({"name": "\udcff"}, "name .* is not UTF-8"),
+        ({"width": 0.0}, "width is 0"),
+        ({"pen": 1e-5}, "stroke 0: width is 0"),
+        ({"lead": 251.0}, "leads 251 pt on"),
+        ({"count": 1001}, "1001 oriented strokes"),
+        ({"at": 1.1e7}, "a point beyond"),
+    ],
+)
+def test_a_texture_that_could_not_be_read_is_not_written(changed, why):
+    made = {"name": "x", "width": 9.0, "pen": 0.4, "lead": 20.0, "count": 1, "at": 0.0} | changed
+    example = [[0, made["at"]], [made["lead"], made["at"]], [made["lead"], 1], [made["lead"], 1]]
+    strokes = Strokes.of(made["width"], 9.0, [example] * made["count"], [made["pen"]] * made["count"])
+    out = io.BytesIO()
+    with pytest.raises(ParameterError, match=why):
+        texture.write(out, Texture(made["name"], strokes, np.arange(made["count"], dtype=np.float64), oriented=True))
+    assert not out.getvalue()
+
+
+@pytest.mark.parametrize("lead", [1.0, 1.0004, 250.0, 250.0004])
+@pytest.mark.parametrize("start", [0.0, 0.001, 4.3337, 7.7777])
+def test_an_example_of_the_shortest_and_the_longest_lead_is_read_wherever_it_begins(start, lead):
+    example = [[start, 1], [start, 2], [start, 3], [start + lead, 1]]
+    out = io.BytesIO()
+    texture.write(out, Texture("x", Strokes.of(9.0, 9.0, [example], [0.4]), np.zeros(1), oriented=True))
+    again = texture.read(io.BytesIO(out.getvalue()), "x")
+    assert again.strokes[0][-1, 0] - again.strokes[0][0, 0] == pytest.approx(lead, abs=0.0011)
+
+
+def test_the_defaults_that_the_schema_tells_are_those_of_the_reader():
+    schema = json.loads((Path(illustration.__file__).parent / "schemas/illustration.schema.json").read_text())
+    told = {n: m["default"] for n, m in schema["$defs"]["layer"]["properties"].items() if "default" in m}
+    plain = READERS["illustration"](json.dumps(page(layers=[{"samples": "a"}])).encode()).layers[0]
+    assert told == {
+        "texture": plain.texture_name, "levels": plain.levels, "gamma": plain.gamma, "swell": plain.swell,
+        "rule": plain.rule, "seed": plain.seed, "turn": plain.turn,
+    }  # fmt: skip

@@ -11,7 +11,7 @@ import pytest
 
 from penink_cli.formats import archive, parts
 from penink_cli.ground.errors import PeninkError
-from penink_cli.options.inputs import read_illustration
+from penink_cli.options.illustrations import read_illustration
 from tests.conftest import ROOT
 
 
@@ -225,3 +225,16 @@ def test_hostile_archives_are_refused(packed, tmp_path):
 def test_a_refusal_is_one_line(penink, packed, tmp_path):
     assert "truncated" in refused(penink, packed[:-30], tmp_path / "bad.penink")
     assert "name it *.penink" in refused(penink, packed, tmp_path / "bad.illustration.json")
+
+
+@pytest.mark.parametrize("member", ["samples", "edges", "texture"])
+def test_a_member_of_the_name_of_a_dash_is_a_file_and_not_standard_input(penink, tmp_path, member):
+    layer = {"samples": "a.pgm", member: "-"}
+    manifest = {"format": "penink-illustration", "version": 1, "width": 9, "height": 9, "layers": [layer]}
+    (tmp_path / "x.json").write_text(json.dumps(manifest))
+    (tmp_path / "a.pgm").write_bytes(b"P5 2 2 255\n1234")
+    done = penink("pack", "x.json", input=b"P5 2 2 255\n1234", cwd=tmp_path)
+    assert (done.returncode == 1 and f"layer 0: {member}" in done.stderr.decode()) or b"no texture -" in done.stderr
+    if member == "samples":
+        (tmp_path / "-").write_bytes(b"P5 2 2 255\n4321")
+        assert penink("pack", "x.json", cwd=tmp_path).returncode == 0

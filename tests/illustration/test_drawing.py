@@ -92,7 +92,7 @@ REJECTED = [
 
 def test_bad_manifests_are_refused(loose):
     from penink_cli.ground.errors import PeninkError
-    from penink_cli.options.inputs import read_illustration
+    from penink_cli.options.illustrations import read_illustration
 
     good = json.loads(loose.read_text())
     for change, reason in REJECTED:

@@ -7,7 +7,7 @@ from penink_cli.formats import archive, illustration
 from penink_cli.ground.errors import LimitError
 from penink_cli.ground.model import EdgeList, GreyImage, Illustration, Layer, OutlineChoice
 from penink_cli.illustration.fitting import packed_within
-from penink_cli.options.inputs import read_illustration, settled
+from penink_cli.options.illustrations import read_illustration, settled
 from penink_cli.options.textures import find_texture
 
 

@@ -4,13 +4,13 @@ cimport cython
 cdef enum:
     INPUTS = 6  # estimates mixed for each binary decision
     TOLD = 4  # of them from contexts, where the others are probabilities that are told
-    NODES = 64  # binary decisions that one number can take
+    NODES = 64  # places of binary decisions in the code of one number
 
 
 @cython.final
 cdef class Coder:
     cdef bint reading
-    cdef int[::1] context  # (INPUTS,) what the next decisions depend on: each has estimates of its own in each context
+    cdef int[::1] context  # (INPUTS,) what the next decisions depend on: estimates are kept for each context
 
     cdef int[:, ::1] _p  # (INPUTS, TABLE) estimates that a decision is 1, of 65536
     cdef unsigned char[:, ::1] _n  # (INPUTS, TABLE) how often each was corrected

@@ -1,10 +1,10 @@
 # cython: boundscheck=False, wraparound=False, cdivision=True
 """The adaptive binary coder behind all that a packed illustration holds: numbers and texts; samples by `samples.pyx`.
 
-A range coder (Martin 1979, carry and all, with 32 bits of range) driven by probabilities that
-several contexts estimate and a small network mixes in the logistic domain (Mahoney's "lightweight
-PAQ"). All of it is integer arithmetic: the same numbers give the same bytes on any machine, which a
-general compressor's library promises from no version to the next.
+A range coder (Martin 1979, with carries and 32 bits of range) driven by probabilities that several contexts estimate
+and a small network mixes in the logistic domain (Mahoney's "lightweight PAQ"). All of it is integer arithmetic: the
+same numbers give the same bytes on any machine. The library of a general compressor does not promise that from one
+version to the next.
 
 What it is worth (`python -m tests.benchmarks.worth coder`, three photographs reduced 4 times, 8 bits): samples take .88
 to .93 of PNG and .86 to .89 of xz, edges .69 to .72 of their steps deflated and .73 to .80 of xz, strengths included.
@@ -19,13 +19,13 @@ cdef enum:
     TABLE = 1 << 18  # estimates for each input
     MIXERS = 4  # sets of mixing weights for each decision
     SLOPE = 20  # mixing weights learn at this rate
-    TOLD_SLOPE = 60  # and where probabilities are told
-    FIRST = 19660  # 0.3: a mixing weight at first
-    FIRST_TOLD = 19661  # where probabilities are told, theirs
-    FIRST_BESIDE = 9830  # and 0.15, that of a context beside them
+    TOLD_SLOPE = 60  # the rate where two probabilities are told (see `told`)
+    FIRST = 19660  # 0.3 of 65536: each mixing weight at first
+    FIRST_TOLD = 19661  # where probabilities are told, the first weight of each of them
+    FIRST_BESIDE = 9830  # and 0.15, the first weight of a context beside them
     LIMIT = 90  # an estimate moves by at least 1 / (LIMIT + 1.6) of its error
-    END = 0b01010101
-    OVERRUN = 4  # bytes that may be read beyond the end: zeros that `finish` leaves out
+    END = 0b01010101  # the end mark
+    OVERRUN = 4  # bytes that may be read beyond the end: `finish` leaves out zeros there
 
 _KNEES = (
     1, 2, 3, 6, 10, 16, 27, 45, 73, 120, 194, 310, 488, 747, 1101, 1546, 2047,
@@ -83,11 +83,11 @@ cdef class Coder:
 
     @property
     def rest(self) -> int:
-        """Bytes that were not needed: the data goes on after its end."""
+        """How many bytes come after all that was read."""
         return max(0, self._size - self._at)
 
     def end(self) -> bool:
-        """Write a mark after the last number, or say whether it is there: data cut short reads as ones for ever."""
+        """Write the end mark, or say whether it comes next. Data that was cut short reads as ones for ever."""
         cdef int k
         cdef int found = 0
         for k in range(8):
@@ -119,7 +119,7 @@ cdef class Coder:
         self._low = (self._low & 0x00FFFFFF) << 8
 
     cdef int _code_bit(self, int bit, int p):
-        """One bit that is 1 with probability p / 4096."""
+        """Code one bit that is 1 with probability p / 4096."""
         cdef unsigned int bound = (self._range >> 12) * <unsigned int>p
         if self.reading:
             bit = 1 if self._code < bound else 0
@@ -137,7 +137,7 @@ cdef class Coder:
         return bit
 
     cdef int _bit(self, int node, int mixer, int bit):
-        """One decision of a number, mixed from the estimates of every context."""
+        """Code one decision of a number, mixed from the estimates of all contexts."""
         return self._decision((mixer * NODES + node) % (MIXERS * NODES), node, INPUTS, SLOPE, bit)
 
     cdef void expect_told(self):
@@ -148,13 +148,13 @@ cdef class Coder:
                 self._weights[row, k] = FIRST_BESIDE if k < TOLD else FIRST_TOLD
 
     cdef int told(self, int node, int mixer, int bit, double one, double other):
-        """One decision, mixed from the estimates of TOLD contexts and two probabilities that it is 1."""
+        """Code one decision from the estimates of TOLD contexts and two probabilities, one and other, that it is 1."""
         self._input[TOLD] = self._stretch[max(4, min(4091, <int>(4096 * one)))]
         self._input[TOLD + 1] = self._stretch[max(4, min(4091, <int>(4096 * other)))]
         return self._decision(mixer * NODES + node, node, TOLD, TOLD_SLOPE, bit)
 
     cdef int _decision(self, int row, int node, int contexts, int slope, int bit):
-        """One decision, by the mixing weights of that row; inputs beyond those of contexts are set already."""
+        """Code one decision by the mixing weights of that row. The caller has set the inputs beyond the contexts'."""
         cdef int k, index, p, error
         cdef long long step, dot = 0
         for k in range(contexts):
@@ -173,7 +173,7 @@ cdef class Coder:
         for k in range(contexts):
             index = self._index[k]
             p = self._p[k, index]
-            # A product of 16 and 16 bits, signed: it needs 33.
+            # A signed product of 16 and 16 bits needs 33.
             step = (65535 if bit else 0) - p
             self._p[k, index] = p + <int>((step * self._rate[self._n[k, index]]) >> 16)
             if self._n[k, index] < LIMIT:
@@ -181,7 +181,7 @@ cdef class Coder:
         return bit
 
     cdef long long whole(self, int mixer, long long value):
-        """A signed number in the contexts set: zero, sign, size in unary up to 12, then Elias gamma."""
+        """Code a signed number in the contexts that are set: zero, sign, size in unary up to 12, then Elias gamma."""
         cdef long long size, rest
         cdef int negative, k, length
         if self._bit(0, mixer, value == 0):
@@ -205,10 +205,9 @@ cdef class Coder:
         return -(size + 1) if negative else size + 1
 
     def number(self, long long value, int kind, int a=0, int b=0) -> int:
-        """One whole number of up to 40 bits.
+        """Code one whole number of up to 40 bits.
 
-        kind: what it is (0 … 15), so that each kind has its own statistics; a, b: contexts of
-        0 … 255 that it is likely to depend on.
+        kind: 0 … 15; each kind has statistics of its own. a, b: contexts, 0 … 255, that the number may depend on.
         """
         cdef int c = (kind & 15) << 8
         self.context[0] = c
@@ -220,7 +219,7 @@ cdef class Coder:
         return self.whole(kind & 3, value)
 
     def number_in(self, long long value, int kind, int a, int b, int c) -> int:
-        """One whole number of up to 40 bits, in three contexts of 0 … 255 and pairs of them; else as `number`."""
+        """Code one whole number as `number` does, in three contexts, 0 … 255, and pairs of them."""
         cdef int base = (kind & 15) << 8
         self.context[0] = base
         self.context[1] = base | (a & 255)
@@ -231,7 +230,7 @@ cdef class Coder:
         return self.whole(kind & 3, value)
 
     def text(self, unsigned char[::1] values) -> None:
-        """Bytes of text, each predicted from the three before it; written from or read into values (n,).
+        """Code the bytes (n,) of a text, each predicted from the three before it: they are written, or read in place.
 
         Reading stops where the bytes overrun.
         """
@@ -261,9 +260,9 @@ cdef class Coder:
             one = bits
 
     def finish(self) -> bytes:
-        """The bytes written, end mark included: the roundest number within the last range.
+        """The bytes written, with the end mark: of the numbers within the last range the one with most trailing zeros.
 
-        Trailing zeros are left out: the reader supplies them.
+        Up to four trailing zero bytes are left out: the reader supplies them.
         """
         self.end()
         cdef unsigned long long last = self._low + self._range - 1

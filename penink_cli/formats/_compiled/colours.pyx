@@ -1,6 +1,6 @@
 # cython: language_level=3, boundscheck=False, wraparound=False, cdivision=True, initializedcheck=False
 # cython: embedsignature=True
-"""Takes stored colours through their curves and matrix to sRGB's values."""
+"""Stored colours through the curves and the matrix of their profile to sRGB's values."""
 
 from libc.stdint cimport uint8_t, uint16_t
 
@@ -15,8 +15,8 @@ def convert(
 ) -> None:
     """Fill out (n, 3) with sRGB's values of colours (n, 3).
 
-    light: (3, values) light, 0 … 1, of each channel's values. matrix: (3, 3) to sRGB's light.
-    coding: sRGB's value of light at even steps from 0 to 1; between two it is linear.
+    light: (3, maxval + 1) the light, 0 … 1, of each value of a channel. matrix: (3, 3) from this to sRGB's light.
+    coding: (steps + 1,) sRGB's value, 0 … maxval, of light at even steps from 0 to 1; linear between two steps.
     """
     cdef Py_ssize_t i, step, steps = coding.shape[0] - 1
     cdef int c

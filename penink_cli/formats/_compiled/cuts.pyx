@@ -1,8 +1,8 @@
 # cython: boundscheck=False, wraparound=False, cdivision=True
-"""Compiled: which neighbours of a sample an edge parts it from, for the prediction of samples in an archive.
+"""Which neighbours of a sample lie behind an edge, for the prediction of samples in an archive.
 
 Coordinates are whole numbers, 16 to the sample spacing: the sample in row i and column j lies at (16 j + 8, 16 i + 8).
-A sample on an edge, or in line with one's end, stands for itself shifted by (ε, ε²), as everywhere.
+A sample on an edge, or in line with an edge's end, counts as shifted by (ε, ε²): the tie rule of `predicates.pyx`.
 """
 
 # west, north, north-west, north-east, two to the west, two to the north
@@ -11,6 +11,7 @@ cdef int[6] DOWNWARD = [0, -1, -1, -1, 0, -2]
 
 
 cdef inline long long floor_16(long long value) noexcept nogil:
+    """The whole number of spacings up to a coordinate."""
     return value >> 4
 
 
@@ -39,10 +40,10 @@ cdef inline bint left_of_view(
 
 
 def mark(long long[:, ::1] ends, unsigned char[:, ::1] cuts) -> None:
-    """Mark with a bit each which of six neighbours cannot be seen from a sample.
+    """Mark, a bit each, which of six neighbours cannot be seen from a sample.
 
     ends: (m, 4) x, y, x, y of edges, 16 to the spacing. cuts: (h, w) zeros, filled with bits 1 west, 2 north,
-    4 north-west, 8 north-east, 16 and 32 two to the west and north. Work is in proportion to the cells that edges pass.
+    4 north-west, 8 north-east, 16 two to the west, 32 two to the north. Time grows with the cells that edges pass.
     """
     cdef Py_ssize_t e, i, j, k, first, last, row_end, column_end
     cdef long long ax, ay, bx, by, low, high, left, right, x, y, qx, qy, span, one, two

@@ -1,8 +1,8 @@
 # cython: boundscheck=False, wraparound=False, cdivision=True, initializedcheck=False
 # cython: embedsignature=True
-"""Reads the codes of a JPEG scan (ITU-T T.81, F.2 and G.2) without making pixels of them: are they all there?
+"""The codes of a JPEG scan (ITU-T T.81, F.2 and G.2) read without making pixels of them, to find damage.
 
-A JPEG has no checksum. But damaged codes fall out of step, and then run out early, leave bytes over, or are none.
+A JPEG has no checksum. But damaged codes fall out of step: they run out early, leave bytes over, or are no codes.
 """
 
 from libc.stdint cimport uint16_t, uint64_t
@@ -14,14 +14,14 @@ cdef enum:
 
 cdef struct Bits:
     const unsigned char* data
-    Py_ssize_t at, end      # of the byte that is read next
-    uint64_t held           # the lowest `count` bits are to come
+    Py_ssize_t at, end      # the place of the byte that is read next, and of the end of the data
+    uint64_t held           # its lowest `count` bits are to come
     int count
-    int made                # so many of them, the last ones, are zeros put in the place of what is missing
+    int made                # the last of these bits: zeros in the place of data that are missing
 
 
 cdef void fill(Bits* bits) noexcept nogil:
-    """Hold at least 48 bits."""
+    """Hold more than 48 bits; where the data end, or a marker comes, zeros are made."""
     cdef unsigned char byte
     cdef Py_ssize_t ahead
     while bits.count <= 48:
@@ -43,7 +43,7 @@ cdef void fill(Bits* bits) noexcept nogil:
 
 
 cdef inline int code(Bits* bits, const uint16_t* lookup) noexcept nogil:
-    """The next Huffman code's symbol, -1 where there is none. At least 32 bits more are held."""
+    """The symbol of the next Huffman code, -1 for no code. At least 32 bits are held afterwards."""
     cdef uint16_t found
     if bits.count < 48:
         fill(bits)
@@ -63,7 +63,7 @@ cdef inline int plain(Bits* bits, int count) noexcept nogil:
 
 
 cdef int baseline(Bits* bits, const uint16_t* dc, const uint16_t* ac) noexcept nogil:
-    """Read a block of a sequential scan."""
+    """Read a block of a sequential scan; one of the results below, as of all passes."""
     cdef int k = 1, found = code(bits, dc)
     if found < 0 or found > 16:
         return _NO_CODE
@@ -86,7 +86,10 @@ cdef int baseline(Bits* bits, const uint16_t* dc, const uint16_t* ac) noexcept n
 
 
 cdef int first_pass(Bits* bits, const uint16_t* ac, int k, int last, int* run, uint64_t* known) noexcept nogil:
-    """Read a block of a progressive scan that brings coefficients k … last anew; run: blocks that have none."""
+    """Read a block of a progressive scan that brings coefficients k … last for the first time.
+
+    run: blocks to come without codes of their own. known: bits of the block's coefficients that are not zero.
+    """
     cdef int found
     if run[0]:
         run[0] -= 1
@@ -111,7 +114,7 @@ cdef int first_pass(Bits* bits, const uint16_t* ac, int k, int last, int* run, u
 
 
 cdef int finer_pass(Bits* bits, const uint16_t* ac, int k, int last, int* run, uint64_t* known) noexcept nogil:
-    """Read a block of a scan that brings one more bit of coefficients k … last; known: which are not zero."""
+    """Read a block of a progressive scan that brings one more bit of coefficients k … last; as `first_pass`."""
     cdef int found, zeros
     if run[0] == 0:
         while k <= last:
@@ -147,7 +150,10 @@ cdef int finer_pass(Bits* bits, const uint16_t* ac, int k, int last, int* run, u
 
 
 cdef int left_over(Bits* bits) noexcept nogil:
-    """Go on to the next marker. Cameras fill up with a byte or two, or with many that are all the same."""
+    """Go on to the next marker; _LEFT_OVER for bytes before it, save those that cameras fill up with.
+
+    These are two at the most, or any number that are all the same.
+    """
     cdef int count = 0, same = 1, byte, value = -1
     cdef int whole = (bits.count - bits.made) // 8
     while True:
@@ -174,14 +180,14 @@ def scan(
     const unsigned char[::1] data, Py_ssize_t start, const uint16_t[:, ::1] lookups, const int[:, ::1] parts,
     uint64_t[::1] known, int across, int down, int restart, bint progressive, int first, int last, int high,
 ):
-    """Read one scan: (what came of it, the place of the marker behind it).
+    """Read one scan: (WHOLE or what is wrong with it, the place of the marker behind it).
 
     lookups: (8, 65536) by table (0-3 DC, 4-7 AC) and the next 16 bits: 256 · a code's length + its symbol, 0 for none.
     parts: a row a component of the scan: DC table, AC table, blocks across and down in a unit, where its blocks
         begin in `known` and how many a row has there.
-    known: of a progressive picture, a block each: which of its coefficients are not zero.
-    across, down: units of the picture; restart: units between restart markers, or 0.
-    first, last, high: the coefficients that a progressive scan brings; high is 0 where it brings them anew.
+    known: of a progressive picture, for each block bits of the coefficients that are not zero.
+    across, down: units of the picture. restart: units between restart markers, 0 for no markers.
+    first, last: the coefficients that a progressive scan brings. high: 0 if it brings them for the first time.
     """
     cdef Bits bits
     cdef int result = _WHOLE, run = 0, c, x, y, i, j, number = 0
@@ -232,7 +238,7 @@ def scan(
                         break
                 if result != _WHOLE:
                     break
-            if bits.count < bits.made:  # zeros that were made have been used
+            if bits.count < bits.made:  # zeros that were made have been read as codes
                 result = _CUT
             if result != _WHOLE:
                 break

@@ -1,15 +1,17 @@
 # cython: boundscheck=False, wraparound=False, cdivision=True
 """Plain JSON read in bulk: arrays of numbers, arrays of pairs, lines of a strokes file, strokes of a texture.
 
-A 12-megapixel photograph of grass has a million edges, 63 MB of text: json takes 5 seconds and
-1.3 GB for it, these loops 0.5 seconds and the memory of the result. A stroke's line costs 0.2 µs
-here and 6 there, which is what lets a third of a million dots pass between two filters in the
-blink of an eye.
+A 12-megapixel photograph of grass has a million edges, 63 MB of text: json takes 5 seconds and 1.3 GB for it, these
+loops 0.5 seconds and the memory of the result. A stroke's line costs 0.2 µs here and 6 with json, so a third of a
+million dots pass between two filters in a tenth of a second.
 
-Plain is a number without exponent and of at most 15 digits: those over a power of ten are one correctly
-rounded division, the same double that `float` gives (but zero is never negative). Everything
-else, right or wrong, is left to json. Every reader below takes a place in the text and returns the
-place after what it read, or REFUSED where that is not plain; a place that is REFUSED already it hands on.
+A number is plain if it has no exponent and at most 15 digits: its digits over a power of ten are one correctly rounded
+division, the same double that `float` gives (but zero is never negative). Everything else, right or wrong, is left to
+json.
+
+Every text is a bytes object: the zero that Python keeps behind its last byte stops every loop. Every reader below takes
+a place in the text and returns the place after what it read, or REFUSED where that is not plain; given REFUSED it
+returns REFUSED.
 """
 
 cdef Py_ssize_t REFUSED = -1
@@ -91,9 +93,8 @@ cdef inline Py_ssize_t _within(const unsigned char* text, Py_ssize_t at, double 
 def numbers(const unsigned char[::1] text, Py_ssize_t start, int group, bint whole, double[::1] out) -> tuple[int, int]:
     """Read the array whose opening bracket stands before ``start``: (place after its closing one, numbers read).
 
-    text: not empty, its last byte a zero, which stops every loop.
-    group: 1 for an array of numbers, 2 for an array of pairs. whole: take whole numbers only. out: room for the
-    numbers. The place is -1 where something is not plain, or the room is too small.
+    text: not empty. group: 1 for an array of numbers, 2 for an array of pairs. whole: take whole numbers only.
+    out: (n,) filled from its beginning. The place is -1 where something is not plain, or more than n numbers come.
     """
     cdef int k
     cdef const unsigned char* data = &text[0]
@@ -147,14 +148,14 @@ def numbers(const unsigned char[::1] text, Py_ssize_t start, int group, bint who
 
 
 cpdef bint agree(double width, double mean) noexcept nogil:
-    """Whether a stroke's width is the mean of its knots' widths, but for rounding and another kind of mean."""
+    """Whether a stroke's width may be the mean of its knots' widths: it differs by rounding and 1 % at the most."""
     return -0.0002 - 0.01 * mean <= width - mean <= 0.0002 + 0.01 * mean
 
 
 cdef Py_ssize_t _points(
     const unsigned char* text, Py_ssize_t at, double limit, double* points, long long* count
 ) noexcept nogil:
-    """Read the array of a chain of cubics' points, of which there are 3k + 1."""
+    """Read the array of the control points of a chain of cubics; REFUSED unless there are 3k + 1."""
     cdef long long n = 0
     at = _literal(text, at, b"[")
     while True:
@@ -178,7 +179,10 @@ cdef Py_ssize_t _stroke(
     const unsigned char* text, Py_ssize_t at, double limit, double* points, double* width, double* knots,
     long long* count, bint* swells,
 ) noexcept nogil:
-    """Read one line, its newline included, the members in our order; the width at each knot is filled in any case."""
+    """Read one line with its newline, its members in the order of `strokes.Writer`.
+
+    knots: filled with the width at each knot, which is the stroke's where the line has no widths.
+    """
     cdef long long k
     cdef long long n = 0
     cdef double total = 0.0
@@ -225,7 +229,7 @@ def strokes(
 ) -> tuple[int, int, int, bool]:
     """Read strokes' lines from `start` until the end or the first line that is not plain.
 
-    text: whole lines; its last byte is a newline (which is what stops every inner loop).
+    text: whole lines, the last one too ended by a newline.
     limit: the largest width and coordinate allowed.
     points (≥ bytes / 6, 2), counts and widths (≥ bytes / 28), and knots (≥ bytes / 6), the widths at all knots, are
     filled from their beginning.
@@ -259,7 +263,7 @@ def prioritized(
 ) -> tuple[int, int, int]:
     """Read the array of a texture's strokes whose opening bracket stands before `start`.
 
-    text: ends with a closing bracket or brace. limit: the largest width and coordinate allowed; least: width.
+    text: not empty. limit: the largest width and coordinate allowed; least: the least width.
     points (≥ opening brackets, 2), counts, priorities and widths (≥ opening braces) are filled from their beginning.
     Returns the place after the closing bracket, -1 where something is not plain, the numbers of strokes and of points.
     """

@@ -1,16 +1,16 @@
 # cython: boundscheck=False, wraparound=False, cdivision=True, initializedcheck=False
 # cython: embedsignature=True
-"""Undoes the filters of PNG rows (PNG specification, 9: each byte was written as its difference from a neighbour)."""
+"""The filters of PNG rows undone (PNG specification, 9): each byte is stored as its difference from a neighbour."""
 
 from libc.stdlib cimport abs
 
 
 def unfilter(unsigned char[:, ::1] rows, unsigned char[::1] above, int pixel):
-    """Undo the filters in place; the first row that has no such filter, or -1.
+    """Undo the filters in place; the first row whose filter does not exist, or -1.
 
     rows: (n, 1 + s), each row's filter and its s bytes.
-    above: (s,) the row before the first, zeros where there is none; becomes the last row.
-    pixel: bytes of a whole pixel, at least 1: how far to the left the neighbour is.
+    above: (s,) the row before the first, zeros where there is none; filled with the last row.
+    pixel: bytes of a whole pixel, at least 1: so far to the left the neighbour is.
     """
     cdef Py_ssize_t i, j, bytes_ = above.shape[0]
     cdef unsigned char* row
@@ -32,7 +32,7 @@ def unfilter(unsigned char[:, ::1] rows, unsigned char[::1] above, int pixel):
             for j in range(bytes_):
                 left = row[j - pixel] if j >= pixel else 0
                 corner = up[j - pixel] if j >= pixel else 0
-                # Paeth: of left, above and corner the one next to left + above - corner, in this order where equal
+                # Paeth: of left, above and corner the one nearest to left + above - corner; of equal ones the first
                 a, b, c = abs(up[j] - corner), abs(left - corner), abs(left + up[j] - 2 * corner)
                 near = left if a <= b and a <= c else up[j] if b <= c else corner
                 row[j] = <unsigned char>(row[j] + near)

@@ -1,8 +1,8 @@
 # cython: boundscheck=False, wraparound=False, cdivision=True
-"""Samples by the `coder`: each by what its neighbours, those that come before it, let expect.
+"""Samples in the code of `coder`: each by what the neighbours that come before it let expect.
 
 Measured on photographs reduced to 128 × 128 samples of 6 bits: 2.6 to 4.3 bits a sample where PNG needs 3.5 to 5.3.
-What is measured of the coder is at its top.
+`coder.pyx` begins with what its code is worth.
 """
 
 from libc.math cimport floor, sqrt
@@ -11,15 +11,15 @@ from penink_cli.formats._compiled.coder cimport Coder
 
 import numpy as np
 
-FITTED_SAMPLES = 1 << 20  # of an image that is fitted: each takes up to 2 µs
-FITTED_LEVELS = 64
+FITTED_SAMPLES = 1 << 20  # the most samples of an image that is fitted: each takes up to 2 µs
+FITTED_LEVELS = 64  # and the most levels
 cdef enum:
-    REACH = 6  # samples, of the window that weights are fitted in
+    REACH = 6  # samples from the one that is coded to the border of the window in which weights are fitted
     TAKEN = 6  # neighbours whose differences are weighed
     SCALES = 64  # classes of how wrong guesses are
-cdef double STIFF = 4.0  # holds weights to those of the plain guess
+cdef double STIFF = 4.0  # of the ridge that holds weights to those of the plain guess
 cdef double SPREAD = 1.08  # of the distribution, in mean errors
-cdef double[13] _FADES  # what a sample so many steps away counts for
+cdef double[13] _FADES  # the weight in the fit of a sample so many steps away
 for _k in range(13):
     _FADES[_k] = round(0.8**_k, 9)
 
@@ -27,15 +27,15 @@ for _k in range(13):
 cdef struct Near:
     int west, north, north_west, north_east, north_north, west_west
     int median  # of west, north and their plane
-    int around  # 16 times the mean of what slopes and neighbours let expect
+    int around  # 16 times the value expected by the neighbours and their slopes
     int rough  # how much the neighbours differ
-    int parted  # 0: no neighbour is behind an edge, 1: some, 2: west and north, 3: all that count
+    int parted  # 0: no neighbour is behind an edge, 1: some, 2: west and north, 3: all four next to the sample
 
 
 cdef inline Near _near(int[:, ::1] values, Py_ssize_t i, Py_ssize_t j, int maxval, int hidden) noexcept nogil:
-    """The neighbours of sample (i, j) that come before it; those that are not there, or hidden, as the others have it.
+    """The neighbours of sample (i, j) that come before it; one beyond the frame, or hidden, is made of the others.
 
-    hidden: bits of those that an edge parts it from, as `cuts.mark` has them.
+    hidden: bits of the neighbours that an edge parts from the sample, as `cuts.mark` has them.
     """
     cdef Near near
     cdef int around = 0
@@ -90,7 +90,7 @@ cdef inline Near _near(int[:, ::1] values, Py_ssize_t i, Py_ssize_t j, int maxva
 
 
 cdef inline int _magnitude(int value) noexcept nogil:
-    """0 … 11, finer for small numbers."""
+    """The class of a size, 0 … 11, finer for small sizes."""
     if value < 6:
         return value
     if value < 9:
@@ -103,8 +103,9 @@ cdef inline int _magnitude(int value) noexcept nogil:
         return 9
     return 10 if value < 48 else 11
 
+
 cdef inline int _sign(int value, int shift) noexcept nogil:
-    """0 … 4: well below, below, the same, above, well above."""
+    """The class of a difference, 0 … 4: well below, below, the same, above, well above."""
     value >>= shift
     if value == 0:
         return 2
@@ -114,7 +115,7 @@ cdef inline int _sign(int value, int shift) noexcept nogil:
 
 
 cdef inline int _around(Near near, int guess, int shift) noexcept nogil:
-    """0 … 624: how four neighbours compare with the guess."""
+    """The class, 0 … 624, of how four neighbours compare with the guess."""
     cdef int found = _sign(near.west - guess, shift) * 125 + _sign(near.north - guess, shift) * 25
     return found + _sign(near.north_north - guess, shift) * 5 + _sign(near.west_west - guess, shift)
 
@@ -122,11 +123,11 @@ cdef inline int _around(Near near, int guess, int shift) noexcept nogil:
 def by_neighbours(Coder coder, int[:, ::1] values, int maxval, unsigned char[:, ::1] cuts=None) -> None:
     """Write samples, or read them, row by row: each as its difference from what its neighbours let expect.
 
-    cuts: (h, w) bits of the neighbours that an edge parts a sample from, as `cuts.mark` has them: their
-    values tell nothing, and are taken to be what those that are left have on the whole.
-    values: (h, w), written from or read into. A number read that would leave 0 … maxval is
-    wrapped into it, so that any bytes at all give samples. Reading stops where the bytes
-    overrun: a few of them may announce millions of samples.
+    values: (h, w), written, or read in place. cuts: (h, w) bits of the neighbours that an edge parts from a sample, as
+    `cuts.mark` has them: their values tell nothing of it, and the mean of the other neighbours stands in.
+
+    A value read that would leave 0 … maxval is wrapped into it, so that any bytes at all give samples. Reading stops
+    where the bytes overrun: a few bytes may announce millions of samples.
     """
     cdef Py_ssize_t i, j
     cdef Py_ssize_t h = values.shape[0]
@@ -163,9 +164,9 @@ def by_neighbours(Coder coder, int[:, ::1] values, int maxval, unsigned char[:, 
         errors[i & 1, w + 1] = errors[i & 1, w]
 
 
-cdef struct Guess:
-    double middle  # of a Student's distribution with four degrees of freedom, levels
-    double spread
+cdef struct Guess:  # Student's distribution with four degrees of freedom
+    double middle  # levels
+    double spread  # levels
 
 
 cdef inline double _below(double x, Guess guess) noexcept nogil:
@@ -176,23 +177,23 @@ cdef inline double _below(double x, Guess guess) noexcept nogil:
 
 
 cdef inline double _between(int low, int high, Guess guess) noexcept nogil:
-    """The part that falls to whole numbers from low to high."""
+    """The probability of the levels from low to high; never 0."""
     return max(1e-6, _below(high + 0.5, guess) - _below(low - 0.5, guess))
 
 
 cdef inline double _share(int a, int b, int low, int high, Guess guess) noexcept nogil:
-    """What falls to a … b of what falls to low … high."""
+    """The probability of the levels a … b, given that it is one of low … high."""
     return _between(a, b, guess) / _between(low, high, guess)
 
 
 cdef inline double _share_of_two(int a, int b, int c, int d, Guess guess) noexcept nogil:
-    """What falls to a … b of what falls to that and to c … d."""
+    """The probability of the levels a … b, given that it is one of these or of c … d."""
     cdef double one = _between(a, b, guess)
     return one / (one + _between(c, d, guess))
 
 
 cdef inline double _stops(int guess, int off, int most, bint below, Guess by) noexcept nogil:
-    """How likely a number that is at least so far off on that side is just that."""
+    """The probability that a level is ``off`` from the guess, given that it is at least so far off on that side."""
     if below:
         return _share(guess - off, guess - off, 0, guess - off, by)
     return _share(guess + off, guess + off, guess + off, guess + most, by)
@@ -201,7 +202,11 @@ cdef inline double _stops(int guess, int off, int most, bint below, Guess by) no
 cdef double _correction(
     double[:, :, ::1] around, Py_ssize_t i, Py_ssize_t j, Py_ssize_t rows, double[:, ::1] matrix
 ) noexcept nogil:
-    """What the weights that served the samples within REACH best add to the plain guess of the sample at i, j."""
+    """What is added to the plain guess of sample (i, j): its neighbours by the weights that fit best within REACH.
+
+    around: (rows, w, TAKEN + 1) of each sample the differences of its neighbours, and the error of its plain guess;
+    row i of the image is row i % rows. matrix: (TAKEN, TAKEN + 1) room for the normal equations.
+    """
     cdef Py_ssize_t up, column, first, last, row
     cdef int a, b, c
     cdef double part, found
@@ -239,7 +244,7 @@ cdef double _correction(
 
 
 cdef double _energy(double[:, ::1] wrong, Py_ssize_t i, Py_ssize_t j, Py_ssize_t rows, Py_ssize_t w) noexcept nogil:
-    """How wrong the guesses were around sample (i, j), levels."""
+    """How wrong the guesses were around sample (i, j), levels. wrong: (rows, w + 4), two columns of margin a side."""
     cdef Py_ssize_t up
     cdef double energy = wrong[i % rows, j + 1] + 0.4 * wrong[i % rows, j]
     cdef double seen = (1.0 if j else 0.0) + (0.4 if j > 1 else 0.0)
@@ -256,7 +261,7 @@ cdef double _energy(double[:, ::1] wrong, Py_ssize_t i, Py_ssize_t j, Py_ssize_t
 
 
 cdef inline void _set_contexts(Coder coder, Near near, int guess, int maxval, int before):
-    """The contexts of the decisions on one sample. before: the errors of its neighbours, added up."""
+    """Set the contexts of the decisions on one sample. before: the sum of its neighbours' errors."""
     cdef int *context = &coder.context[0]
     before = _magnitude(before)
     context[0] = _magnitude(near.rough) * 12 + before + 144 * near.parted
@@ -268,7 +273,10 @@ cdef inline void _set_contexts(Coder coder, Near near, int guess, int maxval, in
 
 
 cdef int _level(Coder coder, int value, int guess, int maxval, int mixer, Guess fit, Guess plain):
-    """Write the level of one sample, or read it: whether it is the guess, on which side of it, how far off."""
+    """Write the level of one sample, or read and return it: whether it is the guess, on which side, how far off.
+
+    fit, plain: the two distributions that say how likely each level is.
+    """
     cdef bint below
     cdef int most
     cdef int off = value - guess
@@ -292,14 +300,14 @@ cdef int _level(Coder coder, int value, int guess, int maxval, int mixer, Guess 
 
 
 def fitted(Coder coder, int[:, ::1] values, int maxval, unsigned char[:, ::1] cuts) -> None:
-    """Write samples of few levels, or read them, row by row: each by what fitted the samples around it.
+    """Write samples of few levels, or read them, row by row: each by weights fitted to the samples around it.
 
-    The neighbours of a sample are weighed as would have served those within REACH of it best, by least squares; how
-    wrong that was nearby says how far the next is likely to be from it, and so how likely each level is (Student's
-    distribution with four degrees of freedom, which has a closed form). Two such guesses and four contexts are
-    mixed. All of it is sums, products, quotients and square roots of doubles in a fixed order.
+    A sample is guessed from its neighbours by the weights that would have guessed the samples within REACH best, by
+    least squares. How wrong the guesses nearby were says how likely each level is (Student's distribution with four
+    degrees of freedom, which has a closed form). This guess, the plain one and four contexts are mixed. All of it is
+    sums, products, quotients and square roots of doubles in a fixed order.
 
-    values: (h, w), at most FITTED_SAMPLES of them, written from or read into. maxval: below FITTED_LEVELS.
+    values: (h, w), at most FITTED_SAMPLES of them, written, or read in place. maxval: below FITTED_LEVELS.
     cuts: as of `by_neighbours`. Reading stops where the bytes overrun.
     """
     cdef Py_ssize_t i, j, here
@@ -310,7 +318,7 @@ def fitted(Coder coder, int[:, ::1] values, int maxval, unsigned char[:, ::1] cu
     cdef Py_ssize_t h = values.shape[0]
     cdef Py_ssize_t w = values.shape[1]
     cdef Py_ssize_t rows = min(h, REACH + 1)
-    cdef double[:, :, ::1] around_all = np.zeros((rows, w, TAKEN + 1))  # what was known of each, what it was
+    cdef double[:, :, ::1] around_all = np.zeros((rows, w, TAKEN + 1))  # see `_correction`
     cdef double[:, ::1] wrong = np.zeros((rows, w + 4))  # two columns of margin
     cdef int[:, ::1] errors = np.zeros((2, w + 2), np.int32)
     cdef double[:, ::1] matrix = np.zeros((TAKEN, TAKEN + 1))
@@ -334,7 +342,7 @@ def fitted(Coder coder, int[:, ::1] values, int maxval, unsigned char[:, ::1] cu
             around_all[here, j, 4] = near.north_north - middle
             around_all[here, j, 5] = near.median - middle
             fit = plain
-            if near.rough or near.median != near.west:  # else whatever they weigh, they say the same
+            if near.rough or near.median != near.west:  # neighbours that are all equal correct nothing
                 fit += _correction(around_all, i, j, rows, matrix)
             plain = min(max(plain, 0.0), <double>maxval)
             fit = min(max(fit, 0.0), <double>maxval)

@@ -1,8 +1,9 @@
 # cython: boundscheck=False, wraparound=False, cdivision=True
-"""Strokes to the lines of a strokes file, in bulk: 0.2 µs a stroke, where repr takes 6."""
+"""Strokes to the lines of a strokes file, in bulk: 0.2 µs a stroke, where Python's repr takes 6."""
 
 
 cdef inline Py_ssize_t _put(unsigned char* out, Py_ssize_t at, const unsigned char* word) noexcept nogil:
+    """Write a word; the place behind it."""
     cdef Py_ssize_t k = 0
     while word[k] != 0:
         out[at + k] = word[k]
@@ -11,7 +12,7 @@ cdef inline Py_ssize_t _put(unsigned char* out, Py_ssize_t at, const unsigned ch
 
 
 cdef Py_ssize_t _fixed(unsigned char* out, Py_ssize_t at, long long number, int decimals) noexcept nogil:
-    """`number` / 10^decimals with that many decimals."""
+    """Write `number` / 10^decimals with that many decimals; the place behind it."""
     cdef unsigned char[24] digits
     cdef int n = 0
     if number < 0:
@@ -33,7 +34,7 @@ cdef Py_ssize_t _fixed(unsigned char* out, Py_ssize_t at, long long number, int 
 
 
 cdef inline long long _nearest(double value) noexcept nogil:
-    """Nearest whole number, halves upwards; by truncation, as the C library's floor is a call."""
+    """The nearest whole number, halves upwards; by truncation, since the C library's floor costs a call."""
     cdef double up = value + 0.5
     cdef long long whole = <long long>up
     return whole - 1 if up < whole else whole
@@ -43,13 +44,15 @@ def put(
     const double[:, ::1] points, const long long[::1] first, const double[::1] widths, const double[::1] knots,
     Py_ssize_t start, Py_ssize_t stop, double limit, unsigned char[::1] out,
 ) -> int:
-    """Write strokes start … stop - 1 as lines into `out`; returns the number of bytes.
+    """Write strokes start … stop - 1 as lines into `out`: the number of bytes.
 
-    knots: widths at the knots of all strokes; written of a stroke whose own are not all the same as written.
-        Empty where no stroke swells.
-    out: at least 64 bytes a stroke and 32 a point, 46 where strokes swell, for limit ≤ 10^7.
-    Coordinates get 3 decimals, widths 4; that of a stroke is at least 0.0001.
-    Returns -1 - i for the first stroke i with a number that is not finite or beyond the limit.
+    points (p, 2), first (s + 1,), widths (s,): as of `Strokes`, points on paper. knots: (n,) widths at the knots of all
+        strokes, empty where no stroke swells. A stroke whose knots' widths, rounded, are all equal is written without.
+    limit: the largest coordinate and width, at most 10^7.
+    out: at least 64 bytes a stroke and 32 a point, 46 where strokes swell.
+
+    Coordinates get 3 decimals, widths 4; a stroke's width is at least 0.0001.
+    Returns -1 - i for the first stroke i with a number that is not finite, beyond the limit, or a width of 0.
     """
     cdef Py_ssize_t i, k, knot, last
     cdef bint swells

@@ -1,4 +1,4 @@
-"""Photographs: every kind and depth to the colours or the grey that is seen, and no damaged one taken for whole.
+"""Photographs: every kind and depth to the colours or the grey that is seen. A damaged one is refused, or reported.
 
     stream ─ signatures ─┬─ netpbm                    PGM, PPM, PBM, PAM
                          ├─ png, jpeg, tiff, webp     only what carries pixels is decoded
@@ -8,11 +8,11 @@
                                │   decoded.seen
        profile ─► background ─► luma, or colours ─► orientation
 
-choices: how the user wants it read, and what becomes of what is wrong.
-Pillow is given these formats and no other: left to itself it would start Ghostscript on an EPS.
+choices: how the user wants a photograph read, and what is an error and what a line.
+Pillow is asked for one of these formats and no other: left to itself it would start Ghostscript on an EPS.
 
 Grey is Rec. 601 luma of sRGB's values, in integers. What is stored in 16 bits stays in 16 bits (of TIFF: where it is
-grey). Transparency lies on a background, which is white.
+grey). Transparency lies on a background, white by default.
 """
 
 from __future__ import annotations
@@ -30,9 +30,9 @@ from penink_cli.ground.model import ColourImage, GreyImage
 
 __all__ = ["ALPHA", "Choices", "grey_of", "read_colours", "read_grey"]
 
-BYTES_PER_PIXEL = 9  # of 16-bit RGBA that does not compress, and some
+BYTES_PER_PIXEL = 9  # 8 of 16-bit RGBA that does not compress, and the overhead of its format
 AS_IS = Choices()
-METADATA = 1 << 24  # bytes that an encoded photograph may have besides
+METADATA = 1 << 24  # bytes that an encoded photograph may have besides its pixels
 
 
 def _silent(line: str) -> None:
@@ -44,7 +44,7 @@ def read_grey(
 ) -> GreyImage:
     """A photograph in any of the formats above as grey samples.
 
-    say: receives a line about each thing that is right as it is read, but perhaps not what was meant.
+    say: receives a line about each thing that is read as the file has it, but perhaps not as the user means it.
 
     Raises FormatError for any other file or a damaged one, LimitError for one that declares more
     than max_pixels pixels, before it is decoded.
@@ -57,7 +57,7 @@ def read_grey(
 def read_colours(
     stream: BinaryIO, source: str, max_pixels: int, choices: Choices = AS_IS, say: Callable[[str], None] = _silent
 ) -> GreyImage | ColourImage:
-    """The same in its colours; grey where it has none. Raises as `read_grey` does."""
+    """A photograph in its colours; grey where it has none. Takes and raises what `read_grey` does."""
     return _read(stream, source, max_pixels, choices, say, colours=True)
 
 
@@ -74,6 +74,7 @@ def _read(
 
 
 def _picture(stream: BinaryIO, source: str, max_pixels: int, verdict: Verdict) -> Decoded:
+    """The picture as its file stores it, by the reader of its kind. Raises FormatError and LimitError."""
     magic = stream.read(2)
     if magic in (b"P1", b"P2", b"P3", b"P4", b"P5", b"P6", b"P7"):
         return netpbm.read(stream, source, max_pixels, magic)
@@ -108,7 +109,10 @@ def _picture(stream: BinaryIO, source: str, max_pixels: int, verdict: Verdict) -
 
 
 def _whole(start: bytes, stream: BinaryIO, kind: str, max_pixels: int) -> bytes:
-    """All bytes of the photograph, as long as its beginning makes sense and the pixels allowed can need them."""
+    """All bytes of the photograph.
+
+    Raises FormatError where the beginning makes no sense, LimitError for more bytes than max_pixels pixels can need.
+    """
     encoded = io.BytesIO(start)
     encoded.seek(len(start))
     most = METADATA + BYTES_PER_PIXEL * max_pixels

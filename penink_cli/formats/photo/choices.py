@@ -1,4 +1,4 @@
-"""How a photograph is to be read, and what becomes of what is wrong with it."""
+"""How the user wants a photograph read, and which faults of its file are errors."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ ALPHA = "alpha"
 class Choices:
     """What a user may say of a photograph.
 
-    background: red, green, blue (0 … 255) of what shows through where it is transparent, or ALPHA: its grey is the
-        transparency itself, black where it is opaque.
+    background: red, green, blue (0 … 255) of what shows through where the photograph is transparent; or ALPHA: the grey
+        that is read is the transparency itself, black where the photograph is opaque.
     profile: whether an embedded profile or gamma is applied.
-    damage: "strict": only a file that is whole; "lenient": what is left of a damaged one; "": no damaged
-        pixels, but a line where only the file is not whole.
+    damage: "strict" refuses a file that is not whole; "lenient" reads what is left of damaged pixels; "" refuses
+        damaged pixels, and reports a file that is not whole although all its pixels are.
     """
 
     background: tuple[int, int, int] | str = (255, 255, 255)
@@ -28,19 +28,19 @@ class Choices:
 
 @dataclass(frozen=True)
 class Verdict:
-    """Decides by the user's choices what is an error and what is only said, a line each."""
+    """Decides by the user's choices whether a fault is an error or a line to `say`."""
 
     choices: Choices
     say: Callable[[str], None]
 
     def scar(self, line: str) -> None:
-        """A file is not whole while all its pixels are: a line says so. Raises FormatError where it was chosen."""
+        """Report that a file is not whole although all its pixels are. Raises FormatError where damage is "strict"."""
         if self.choices.damage == "strict":
             raise FormatError(line)
         self.say(line)
 
     def damage(self, error: FormatError) -> None:
-        """Pixels are lost or wrong: the error is raised, or a line says it, by what was chosen."""
+        """Raise the error, which says that pixels are lost or wrong; where damage is "lenient", only report it."""
         if self.choices.damage != "lenient":
             raise error
         self.say(f"{error.message}; what is left of it is read")

@@ -17,9 +17,9 @@ from penink_cli.ground.model import ColourImage, GreyImage
 BAND = 1 << 20  # pixels converted at a time
 RED, GREEN, BLUE = 299, 587, 114  # Rec. 601 luma, thousandths
 SIXTEEN = 65535
-SHALLOW = 4  # a picture of 16 bits whose brightest value is below a quarter of white is hardly meant so
+SHALLOW = 4  # where no value of 16 bits reaches this part of white, fewer bits were most likely stored in 16
 PALE = 0.9  # grey above which a subject is hard to tell from white paper
-PALE_PART = 0.95  # of a transparent picture's subject
+PALE_PART = 0.95  # the part of a transparent picture's subject that is pale when the subject is lost
 
 Values = npt.NDArray[Any]  # uint8 where maxval is below 256, else uint16
 
@@ -28,10 +28,10 @@ Values = npt.NDArray[Any]  # uint8 where maxval is below 256, else uint16
 class Decoded:
     """A picture as its file stores it.
 
-    maxval: white, and opaque.
+    maxval: the value of white, and of an opaque alpha.
     channels: 1 grey, 2 grey and alpha, 3 red, green and blue, 4 these and alpha.
-    bands: (k, width, channels) of some rows each, from the top.
-    profile: what the colours mean, None for sRGB.
+    bands: (k, width, channels) of some rows each, from the top, 0 … maxval.
+    profile: what the stored colours mean, None for sRGB's.
     orientation: EXIF's, 1 … 8.
     """
 
@@ -45,9 +45,9 @@ class Decoded:
 
 
 def seen(picture: Decoded, verdict: Verdict, colours: bool) -> GreyImage | ColourImage:
-    """The picture as it should be seen; in its colours where they are wanted and there are any.
+    """The picture as it should be seen; colours: in its colours, if it has any, and not as grey.
 
-    Raises FormatError where its opacity is asked for and it has none.
+    Raises FormatError where the background is ALPHA and the picture has no transparency.
     """
     choices = verdict.choices
     transparent = picture.channels in (2, 4)
@@ -78,7 +78,7 @@ def seen(picture: Decoded, verdict: Verdict, colours: bool) -> GreyImage | Colou
 
 
 def grey_of(image: ColourImage) -> GreyImage:
-    """The luma of an image in its colours."""
+    """The luma of a coloured image."""
     height, width = image.values.shape[:2]
     grey = np.empty((height, width), image.values.dtype)
     step = max(1, BAND // width)
@@ -112,7 +112,10 @@ def _shown(
     planes: bool,
     subject: _Subject,
 ) -> npt.NDArray[Any]:
-    """Grey (k, w), or red, green and blue (k, w, 3), of what a band stores."""
+    """Grey (k, w), or with planes red, green and blue (k, w, 3), of a band of stored values.
+
+    convert: takes the values through the profile, None for none. subject: looks at what is not transparent.
+    """
     channels = band.shape[2]
     if channels in (2, 4):
         alpha = band[..., -1]
@@ -133,7 +136,7 @@ def _shown(
 
 
 def _over(band: npt.NDArray[Any], alpha: Values, background: tuple[int, int, int], maxval: int) -> npt.NDArray[Any]:
-    """The colours of a band on a background."""
+    """Grey or colours (k, w, channels) of a band of that opacity (k, w) on a background of 8-bit levels."""
     behind = [(level * maxval + 127) // 255 for level in background]
     if band.shape[2] == 1 and len(set(background)) == 1:
         behind = behind[:1]
@@ -143,21 +146,21 @@ def _over(band: npt.NDArray[Any], alpha: Values, background: tuple[int, int, int
 
 
 class _Subject:
-    """What a picture shows that is not transparent: how much of it is pale?"""
+    """Measures how much of what is not transparent in a picture is pale. Sums are in units of alpha."""
 
     def __init__(self, maxval: int):
         self.maxval = maxval
         self.pale = self.all = self.clear = 0
 
     def look(self, grey: npt.NDArray[Any], alpha: Values) -> None:
-        """Count a band's opacity."""
+        """Count a band: its grey (k, w) and its opacity (k, w)."""
         opacity = alpha.astype(np.int64)
         self.all += int(opacity.sum())
         self.pale += int(opacity[grey >= PALE * self.maxval].sum())
         self.clear += int((self.maxval - opacity).sum())
 
     def is_pale(self) -> bool:
-        """Whether it vanishes on white, and something around it is transparent."""
+        """Whether the subject is lost on white, and something around it is transparent."""
         return self.clear > 0 and self.all > 0 and self.pale >= PALE_PART * self.all
 
 

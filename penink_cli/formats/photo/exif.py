@@ -1,4 +1,4 @@
-"""The one thing that EXIF says of a picture's pixels: which way up they are."""
+"""Of EXIF, the orientation: nothing else in it concerns the pixels."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ ORIENTATION = 274
 
 
 def orientation(exif: bytes | None) -> int:
-    """1 … 8 of an EXIF block, with or without its ``Exif`` before it; 1 where it does not say, or makes no sense."""
+    """The orientation, 1 … 8, of an EXIF block with or without its ``Exif``; 1 where it has none or is damaged."""
     if not exif:
         return 1
     exif = exif.removeprefix(b"Exif\0\0")

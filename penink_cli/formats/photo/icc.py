@@ -1,4 +1,7 @@
-"""ICC profiles (ICC.1): the curves and the matrix of grey and of red, green and blue. Others are told, and left."""
+"""ICC profiles (ICC.1) of a curve for grey, or of curves and a matrix for red, green and blue.
+
+A profile of another kind is reported and not applied.
+"""
 
 from __future__ import annotations
 
@@ -11,20 +14,20 @@ from penink_cli.formats.photo.profile import FROM_XYZ, Curve, Profile, product
 from penink_cli.ground.exact import power
 from penink_cli.ground.model import Floats
 
-MOST = 1 << 22  # bytes of a profile that are looked at
-WORDS = 1 << 16  # of a curve
-# Of parametric curves, by their function: how many parameters of g a b c d e f there are.
-_PARAMETERS = (1, 3, 4, 5, 7)
+MOST = 1 << 22  # bytes of a profile that are read
+WORDS = 1 << 16  # the most entries of a curve's table
+_PARAMETERS = (1, 3, 4, 5, 7)  # how many of g a b c d e f each function of a parametric curve has
+_TRIED = np.arange(5) / 4  # values at which a curve is tried
 
 
 class Unread(Exception):
-    """A profile that says its colours in a way that is not read; the message ends a sentence about it."""
+    """A profile cannot be applied; the message is the end of a sentence that begins with "its colour profile"."""
 
 
 def read(profile: bytes, grey: bool) -> Profile:
-    """The profile of a picture in grey or in colour.
+    """The profile of a grey or a coloured picture.
 
-    Raises Unread for one that makes no sense, or is of colours or a kind that is not read.
+    Raises Unread for a profile that makes no sense, is not for such a picture, or is of a kind that is not read.
     """
     try:
         return _read(profile[:MOST], grey)
@@ -33,7 +36,7 @@ def read(profile: bytes, grey: bool) -> Profile:
 
 
 def profile_of(embedded: bytes | None, grey: bool, verdict: Verdict) -> Profile | None:
-    """The profile that a picture in grey or in colour has with it; None, and a line, where it cannot be applied."""
+    """The profile embedded in a grey or a coloured picture; None, with a line, where it cannot be applied."""
     if not embedded or not verdict.choices.profile:
         return None
     try:
@@ -68,12 +71,25 @@ def _read(profile: bytes, grey: bool) -> Profile:
 
 
 def _point(tag: bytes) -> tuple[float, ...]:
-    """X, Y, Z."""
+    """X, Y and Z of a tag of type XYZ."""
     return tuple(v / 65536 for v in struct.unpack_from(">3i", tag, 8))
 
 
 def _curve(tag: bytes) -> Curve:
-    """The curve that a tag defines, from values to light."""
+    """The curve that a tag defines, from values to light, both 0 … 1.
+
+    Raises Unread for one that gives no number, or the same light for all values.
+    """
+    curve = _defined(tag)
+    with np.errstate(all="ignore"):
+        light = curve(_TRIED)
+    if not np.isfinite(light).all() or (light == light[0]).all():
+        raise Unread("has a curve that makes no sense")
+    return curve
+
+
+def _defined(tag: bytes) -> Curve:
+    """The curve as the tag has it, whatever it gives."""
     if tag[:4] == b"para":
         return _parametric(tag)
     if tag[:4] != b"curv":
@@ -101,23 +117,24 @@ def _gamma(g: float) -> Curve:
 
 
 def _parametric(tag: bytes) -> Curve:
-    """Functions 0 … 4 of parametricCurveType."""
+    """Functions 0 … 4 of parametricCurveType. Raises ZeroDivisionError where b/a is needed and a is 0."""
     function = struct.unpack_from(">H", tag, 8)[0]
     count = _PARAMETERS[function]
     given = [v / 65536 for v in struct.unpack_from(f">{count}i", tag, 12)]
     g, a, b, c, d, e, f = given + [0.0] * (7 - count)
+    if g <= 0:
+        raise Unread("has a curve that makes no sense")
     if function == 0:
         return _gamma(g)
-    if function == 1:  # (a·x + b)^g from -b/a on
-        return lambda x: np.where(x >= -b / a, power(np.maximum(a * x + b, 0.0), g), 0.0)
-    if function == 2:  # the same and c, and c below
-        return lambda x: np.where(x >= -b / a, power(np.maximum(a * x + b, 0.0), g) + c, c)
+    if function in (1, 2):  # (a·x + b)^g + c from -b/a on, c below
+        begin = -b / a
+        return lambda x: np.where(x >= begin, power(np.maximum(a * x + b, 0.0), g) + c, c)
     # (a·x + b)^g + e from d on, c·x + f below
     return lambda x: np.where(x >= d, power(np.maximum(a * x + b, 0.0), g) + e, c * x + f)
 
 
 def _of_lightness(curve: Curve) -> Curve:
-    """Light of a curve that gives CIE lightness, 0 … 1 for L* 0 … 100."""
+    """From values to light, of a curve from values to CIE lightness, 0 … 1 for L* 0 … 100."""
 
     def light(value: Floats) -> Floats:
         lightness = 100.0 * curve(value)

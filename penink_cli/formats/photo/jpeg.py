@@ -1,13 +1,13 @@
-"""JPEG (ITU-T T.81): checked code by code, then decoded by the library from what carries pixels alone.
+"""JPEG (ITU-T T.81): checked code by code, then decoded by the library, from what carries pixels alone.
 
-The library's decoder guesses where codes are damaged and says so to nobody. Here all codes of all scans are read first
-(`_compiled/jpeg_scans`, a fraction of the time of decoding), so that damage is known, and where; comments, profiles,
-bytes between segments and whatever else carries no pixels are left out of what is decoded, and decide nothing.
+Where codes are damaged the library's decoder makes up pixels without a word. So all codes of all scans are read first
+(`_compiled/jpeg_scans`), which finds damage. Comments, profiles, bytes between segments and whatever else carries no
+pixels are left out of what is decoded, so that they cannot fail it.
 
 What the check is worth (`python -m tests.benchmarks.worth codes`): of 2000 files that were cut or had a bit struck the
-library gives other pixels for some 1480 without a word. A quarter (baseline) to two fifths (progressive) of these are
-refused, and next to none whose pixels are the same; the others are files that somebody might have written. It takes
-three quarters of the time of decoding, and comes before it: nothing is decoded twice.
+library gives other pixels for some 1480 without a word. The check refuses a quarter (baseline) to two fifths
+(progressive) of these, and next to none whose pixels are the same; the others are files that somebody might have
+written. It takes three quarters of the time of decoding. Nothing is decoded twice.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ ICC, EXIF = b"ICC_PROFILE\0", b"Exif\0\0"
 FRAMES = {0xC0: False, 0xC1: False, 0xC2: True}  # marker: progressive
 UNCHECKED = {0xC9, 0xCA}  # arithmetic codes, which the library may know
 OTHERS = {0xC3: "lossless", 0xC5: "hierarchical", 0xC6: "hierarchical", 0xC7: "hierarchical", 0xCB: "lossless"}
-SAID = {
+SAID = {  # of each result of `jpeg_scans.scan`
     jpeg_scans.CUT: "its codes end too early",
     jpeg_scans.NO_CODE: "codes that make no sense",
     jpeg_scans.LEFT_OVER: "codes that nothing needs before a marker",
@@ -39,18 +39,21 @@ SAID = {
 
 @dataclass
 class _Part:
-    """A colour component: blocks across and down in a unit, where its blocks begin, how many a row has."""
+    """A colour component: blocks across and down in a unit (MCU), number of its first block, its blocks in a row."""
 
     across: int
     down: int
     first: int = 0
     stride: int = 0
-    missing: list[int] = field(default_factory=lambda: [99] * 64)  # bits to come of each coefficient, 99 for all
+    missing: list[int] = field(default_factory=lambda: [99] * 64)  # bits still to come of each coefficient, 99 for all
 
 
 @dataclass
 class _File:
-    """What has been found so far."""
+    """What the segments and scans read so far have said.
+
+    lookups, known: as of `jpeg_scans.scan`. clean: the segments and scans that carry pixels.
+    """
 
     width: int = 0
     height: int = 0
@@ -63,11 +66,11 @@ class _File:
     icc: dict[int, bytes] = field(default_factory=dict)
     icc_parts: int = 0
     exif: bytes | None = None
-    lost: bool = False  # codes are missing or wrong, which has been said
+    lost: bool = False  # codes are missing or wrong, and have been reported
 
     @property
     def most(self) -> tuple[int, int]:
-        """Blocks across and down in a unit of the component that has most."""
+        """The most blocks across, and down, that any component has in a unit."""
         return max(p.across for p in self.parts.values()), max(p.down for p in self.parts.values())
 
     def complete(self) -> bool:
@@ -80,7 +83,7 @@ class _File:
 
 
 def read(encoded: bytes, max_pixels: int, verdict: Verdict) -> Decoded:
-    """The picture of a JPEG. Raises FormatError where its codes are damaged or end too early."""
+    """The picture of a JPEG. Raises FormatError where its codes are damaged or end too early, and LimitError."""
     found = _File()
     try:
         at = _walk(encoded, found, max_pixels, verdict)
@@ -104,6 +107,7 @@ def read(encoded: bytes, max_pixels: int, verdict: Verdict) -> Decoded:
 
 
 def _lost(error: FormatError, found: _File, verdict: Verdict) -> None:
+    """Report once that pixels are lost; raise the error where nothing is left, or where the verdict is to."""
     if not found.begun() and not found.clean:
         raise error
     if not found.lost:
@@ -115,7 +119,7 @@ def _walk(encoded: bytes, found: _File, max_pixels: int, verdict: Verdict) -> in
     """Go over all segments and scans; the place of the end marker, None where there is none."""
     at, size = 2, len(encoded)
     while True:
-        at = encoded.find(b"\xff", at)  # whatever lies between segments is passed over, as decoders do
+        at = encoded.find(b"\xff", at)  # bytes between segments are passed over, as decoders do
         if at < 0 or at + 1 >= size:
             return None
         marker = encoded[at + 1]
@@ -145,7 +149,7 @@ def _walk(encoded: bytes, found: _File, max_pixels: int, verdict: Verdict) -> in
 
 
 def _segment(marker: int, content: bytes, found: _File, max_pixels: int) -> bool:
-    """Note what a segment says; whether the decoder needs it."""
+    """Note what a segment says; whether the decoder needs it. Raises FormatError and LimitError."""
     if marker == 0xE2 and content.startswith(ICC) and len(content) > 14:
         found.icc.setdefault(content[12], content[14:])  # a profile that comes twice is the same one
         found.icc_parts = found.icc_parts or content[13]
@@ -168,6 +172,7 @@ def _segment(marker: int, content: bytes, found: _File, max_pixels: int) -> bool
 
 
 def _frame(marker: int, content: bytes, found: _File, max_pixels: int) -> None:
+    """Note the size and the components that a frame header declares. Raises FormatError and LimitError."""
     if found.frame:
         raise FormatError("damaged JPEG photograph: a second header")
     if marker not in FRAMES and marker not in UNCHECKED:
@@ -195,7 +200,7 @@ def _frame(marker: int, content: bytes, found: _File, max_pixels: int) -> None:
 
 
 def _tables(content: bytes, found: _File) -> None:
-    """Huffman tables as what the next 16 bits mean: 256 · the code's length + its symbol."""
+    """Fill the lookups from a segment of Huffman tables. Raises ValueError and IndexError for a damaged one."""
     at = 0
     while at < len(content):
         kind, counts = content[at], content[at + 1 : at + 17]
@@ -217,7 +222,10 @@ def _tables(content: bytes, found: _File) -> None:
 
 
 def _scan(encoded: bytes, at: int, content: bytes, found: _File, verdict: Verdict) -> int:
-    """Read a scan's codes; the place of the marker behind them, below 0 where it lies behind all that is there."""
+    """Read a scan's codes; the place of the marker behind them, -1 where the file ends before one.
+
+    Raises FormatError, and ValueError for a damaged header of the scan.
+    """
     if not found.frame:
         raise FormatError("damaged JPEG photograph: pixels before its header")
     if found.frame in UNCHECKED:
@@ -281,7 +289,7 @@ def _next_marker(encoded: bytes, at: int) -> int:
 
 
 def size(encoded: bytes | memoryview) -> tuple[int, int] | None:
-    """Width and height that a JPEG file declares; None where it does not come to that."""
+    """Width and height that a JPEG file declares; None where no frame header comes before the pixels."""
     at = 2
     while at + 9 <= len(encoded):
         if encoded[at] != 0xFF:
@@ -300,7 +308,7 @@ def size(encoded: bytes | memoryview) -> tuple[int, int] | None:
 
 
 def check_beginning(encoded: bytes, max_pixels: int) -> None:
-    """Raise FormatError where no header has come, LimitError for one that declares more pixels than allowed."""
+    """Raise FormatError where no frame header has come, LimitError for one that declares more than max_pixels."""
     found = size(encoded)
     if found is None:
         raise FormatError("damaged JPEG photograph, or one of a rare kind: its header makes no sense")

@@ -12,14 +12,14 @@ from penink_cli.formats.photo.decoded import Decoded
 from penink_cli.ground.errors import FormatError, in_quotes
 
 MAX_LINES, MAX_LINE = 1000, 4096  # of the header of a PAM
-# Tuple type: its depth, which is the number of its channels.
+# The depth, which is the number of channels, of each type of tuples.
 TUPLES = {
     "BLACKANDWHITE": 1, "GRAYSCALE": 1, "RGB": 3, "BLACKANDWHITE_ALPHA": 2, "GRAYSCALE_ALPHA": 2, "RGB_ALPHA": 4,
 }  # fmt: skip
 
 
 def read(stream: BinaryIO, source: str, max_pixels: int, magic: bytes) -> Decoded:
-    """What follows the magic number of any of P1 … P7."""
+    """The picture that follows the magic number of any of P1 … P7. Raises FormatError and LimitError."""
     if magic in (b"P1", b"P4"):
         return _bitmap(stream, source, max_pixels, magic)
     if magic == b"P7":
@@ -35,7 +35,7 @@ def _decoded(values: npt.NDArray[Any], maxval: int) -> Decoded:
 
 
 def _bitmap(stream: BinaryIO, source: str, max_pixels: int, magic: bytes) -> Decoded:
-    """Bits, 1 for black."""
+    """A PBM: bits, 1 for black. Raises FormatError and LimitError."""
     width, height = pgm.header_numbers(stream, source, 2)
     pgm.check_size(width, height, max_pixels, source)
     if magic == b"P4":
@@ -48,7 +48,7 @@ def _bitmap(stream: BinaryIO, source: str, max_pixels: int, magic: bytes) -> Dec
 
 
 def _plain_bits(stream: BinaryIO, source: str, count: int) -> npt.NDArray[np.uint8]:
-    """Digits 0 and 1, with white space and comments among them or not."""
+    """``count`` digits 0 and 1 (count,), between which there may be white space and comments. Raises FormatError."""
     found: list[npt.NDArray[np.uint8]] = []
     have, comment = 0, False
     while have < count:
@@ -74,7 +74,7 @@ def _plain_bits(stream: BinaryIO, source: str, count: int) -> npt.NDArray[np.uin
 
 
 def _arbitrary(stream: BinaryIO, source: str, max_pixels: int) -> Decoded:
-    """A PAM: lines of a name and a value, then tuples."""
+    """A PAM: lines of a name and a value, then tuples. Raises FormatError and LimitError."""
     numbers = dict.fromkeys(("WIDTH", "HEIGHT", "DEPTH", "MAXVAL"), 0)
     kind, first = "", stream.readline(MAX_LINE)
     if first.strip():

@@ -1,4 +1,4 @@
-"""Photographs that Pillow decodes, and only what is handed to it: by itself it would start Ghostscript on an EPS."""
+"""Photographs decoded by Pillow, which is told the format: by itself it would start Ghostscript on an EPS."""
 
 from __future__ import annotations
 
@@ -25,23 +25,23 @@ if TYPE_CHECKING:
     from PIL import Image
 
 SHOWN = {"WEBP": "WebP"}
-RUN = 1 << 12  # pixels that a byte of a squeezed BMP, or of a GIF, can make at the most, and some
-PART = 16  # at least one in so many of a picture's bytes must be there for what is left of it to be read
+RUN = 1 << 12  # more pixels than one byte of a run-length coded BMP can make
+PART = 16  # what is left of a damaged picture is read only if one in so many of its bytes is there
 
 
 @contextlib.contextmanager
 def errors(kind: str) -> Iterator[None]:
-    """Turn what Pillow raises, which may be nearly anything on damaged files, into errors of ours.
+    """While the block runs, turn whatever Pillow raises, nearly anything on damaged files, into a PeninkError.
 
     Raises FormatError, and LimitError where memory ends.
     """
     from PIL import Image, UnidentifiedImageError
 
     name = SHOWN.get(kind, kind)
-    Image.MAX_IMAGE_PIXELS = None  # our own limit stands in its place, and is an error
+    Image.MAX_IMAGE_PIXELS = None  # `check_size` has the limit, and raises an error where Pillow warns
     try:
         with warnings.catch_warnings(), _silence() if kind == "TIFF" else contextlib.nullcontext():
-            warnings.simplefilter("ignore")  # of damaged metadata, which are of no use here
+            warnings.simplefilter("ignore")  # Pillow warns of damaged metadata, which decide nothing here
             yield
     except PeninkError:
         raise
@@ -56,10 +56,10 @@ def errors(kind: str) -> Iterator[None]:
 
 @contextlib.contextmanager
 def _silence() -> Iterator[None]:
-    """Keep libtiff from writing to standard error; what it has found comes back as an exception as well."""
+    """While the block runs, keep libtiff from writing to standard error; Pillow raises what libtiff finds."""
     try:
         kept, null = os.dup(2), os.open(os.devnull, os.O_WRONLY)
-    except OSError:  # standard error is closed: nothing can be written
+    except OSError:  # standard error is closed, so libtiff cannot write either
         yield
         return
     try:
@@ -75,13 +75,13 @@ def check_beginning(encoded: bytes, kind: str, max_pixels: int) -> None:
     """Raise FormatError or LimitError where the rest of a long stream is not worth waiting for."""
     order = "<" if encoded[:1] == b"I" else ">"
     if kind == "TIFF" and struct.unpack_from(f"{order}4xI", encoded)[0] >= len(encoded) - 1024:
-        return  # its header comes last
+        return  # the directory of this TIFF comes at its end
     with errors(kind), _opened(encoded, kind) as image:
         check_size(*image.size, max_pixels)
 
 
 def read(encoded: bytes, kind: str, max_pixels: int, verdict: Verdict) -> Decoded:
-    """A photograph of a kind that needs no more than that: GIF, BMP, AVIF, HEIC."""
+    """A photograph of a kind that Pillow alone reads: GIF, BMP, AVIF, HEIC. Raises FormatError and LimitError."""
     with errors(kind):
         image = _opened(encoded, kind)
         check_size(*image.size, max_pixels)
@@ -102,22 +102,22 @@ def _check_bitmap(encoded: bytes, width: int, height: int, verdict: Verdict) -> 
     """Raise FormatError where a BMP has fewer bytes than its rows need, before room is made for these."""
     old = encoded[14] == 12
     bits = int.from_bytes(encoded[24:26] if old else encoded[28:30], "little")
-    squeezed = not old and int.from_bytes(encoded[30:34], "little") in (1, 2)
-    needed = width * height // RUN if squeezed else (width * bits + 31) // 32 * 4 * height
+    in_runs = not old and int.from_bytes(encoded[30:34], "little") in (1, 2)
+    needed = width * height // RUN if in_runs else (width * bits + 31) // 32 * 4 * height
     if len(encoded) < needed:
         error = FormatError(f"truncated: {len(encoded)} of at least {needed} BMP bytes")
-        if squeezed or PART * len(encoded) < needed:
+        if in_runs or PART * len(encoded) < needed:
             raise error
         verdict.damage(error)
 
 
 def _has_more(image: Image.Image) -> bool:
-    """Whether a second picture follows, in a copy: the one decoded stays."""
+    """Whether a file holds more pictures than the one that has been decoded."""
     return getattr(image, "is_animated", False)
 
 
 def _opened(encoded: bytes, kind: str) -> Image.Image:
-    """The photograph, not decoded yet."""
+    """The photograph, not decoded yet. Raises FormatError for a kind that this Pillow cannot decode."""
     from PIL import Image, features
 
     if kind == "HEIF":
@@ -134,7 +134,10 @@ def _opened(encoded: bytes, kind: str) -> Image.Image:
 def decoded(
     encoded: bytes, kind: str, max_pixels: int, verdict: Verdict, maxval: int = SIXTEEN, inverted: bool = False
 ) -> Decoded:
-    """The first picture that Pillow finds in a file of one kind; maxval, inverted: of 16 bits, as TIFF says."""
+    """The first picture of a file of one kind. Raises FormatError and LimitError.
+
+    maxval: white of a picture of 16 bits. inverted: whether 0 is white there (see `of_image`).
+    """
     with errors(kind):
         image = _opened(encoded, kind)
         check_size(*image.size, max_pixels)
@@ -143,7 +146,7 @@ def decoded(
 
 
 def _load(image: Image.Image, kind: str, verdict: Verdict) -> None:
-    """Decode the pixels; of a damaged photograph what is left, where the user has asked for that."""
+    """Decode the pixels. Raises FormatError for damaged ones, unless the user has asked for what is left of them."""
     from PIL import ImageFile
 
     try:
@@ -159,9 +162,10 @@ def _load(image: Image.Image, kind: str, verdict: Verdict) -> None:
 
 
 def of_image(image: Image.Image, sixteen: int = SIXTEEN, inverted: bool = False) -> Decoded:
-    """A decoded image as bands of what it stores; inks and palettes become colours.
+    """A decoded image as bands of stored values; inks and palettes become colours.
 
-    sixteen: white of one of 16 bits; inverted: that 0 is white there, which Pillow heeds in 8 bits only.
+    sixteen: white of an image of 16 bits. inverted: whether 0 is white there; in 8 bits Pillow has obeyed that already.
+
     Raises FormatError for other kinds than grey and colour of 8 or 16 bits.
     """
     if image.mode in ("I", "F", "LAB", "HSV"):
@@ -198,5 +202,5 @@ def of_image(image: Image.Image, sixteen: int = SIXTEEN, inverted: bool = False)
 
 
 def with_meaning(picture: Decoded, profile: Profile | None, orientation: int) -> Decoded:
-    """The picture, with what its file says besides."""
+    """The picture with the profile and the orientation that its file declares."""
     return replace(picture, profile=profile, orientation=orientation)

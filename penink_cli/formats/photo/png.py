@@ -1,7 +1,7 @@
-"""PNG (ISO/IEC 15948): every kind at the depth it is stored with. What carries no pixels decides nothing.
+"""PNG (ISO/IEC 15948): every kind at the depth it is stored with. Chunks that carry no pixels cannot fail the reading.
 
-Image libraries are not used. The usual one refuses a picture for its comments, shows damage as black rows, cuts 16 bits
-of colour to 8, and compares the one transparent value after it has changed the depth.
+No image library is used. Pillow refuses a picture for its comments, shows damage as black rows, cuts 16 bits of colour
+to 8, and compares the one transparent value only after it has changed the depth.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from penink_cli.formats.photo.profile import Profile, of_gamma
 from penink_cli.ground.errors import FormatError, printable
 
 BAND = 1 << 20  # bytes of rows inflated at a time
-PIXELS = (b"PLTE", b"tRNS", b"IDAT")  # chunks without which a picture is another one
+PIXELS = (b"PLTE", b"tRNS", b"IDAT")  # chunks without which other pixels are seen
 MEANING = (b"gAMA", b"cHRM", b"sRGB", b"iCCP", b"cICP", b"eXIf", b"acTL")
 CHANNELS = {0: 1, 2: 3, 3: 1, 4: 2, 6: 4}
 DEPTHS = {0: (1, 2, 4, 8, 16), 2: (8, 16), 3: (1, 2, 4, 8), 4: (8, 16), 6: (8, 16)}
@@ -36,11 +36,11 @@ PLAIN = ((0, 0, 1, 1),)
 
 @dataclass
 class _Chunks:
-    """The chunks of a PNG by their names; of IDAT, where the content of each lies."""
+    """The chunks of a PNG: pixels, where the content of each IDAT begins and ends; others, their content by name."""
 
     pixels: list[tuple[int, int]] = field(default_factory=list)
     others: dict[bytes, bytes] = field(default_factory=dict)
-    trouble: str = ""  # with the file behind its pixels
+    trouble: str = ""  # what is wrong with the file behind its pixels
 
 
 @dataclass(frozen=True)
@@ -56,14 +56,14 @@ class _Header:
         return self.bits * CHANNELS[self.colour]
 
     def passes(self) -> Iterator[tuple[tuple[int, int, int, int], int, int]]:
-        """Each pass that has pixels, its columns and its rows."""
+        """Of each pass that has pixels: its entry of PASSES, its columns, its rows."""
         for step in PASSES if self.interlaced else PLAIN:
             columns, rows = -(-(self.width - step[0]) // step[2]), -(-(self.height - step[1]) // step[3])
             if columns > 0 and rows > 0:
                 yield step, columns, rows
 
     def bytes(self) -> int:
-        """Of all rows, each with the byte that names its filter."""
+        """How many bytes all rows have, each with the byte that names its filter."""
         lengths = [rows * (1 + (columns * self.bits_per_pixel + 7) // 8) for _, columns, rows in self.passes()]
         return sum(lengths)  # whole numbers
 
@@ -104,7 +104,7 @@ def read(encoded: bytes, max_pixels: int, verdict: Verdict) -> Decoded:
 
 
 def header(encoded: bytes, max_pixels: int) -> _Header:
-    """What its first chunk says. Raises FormatError where it makes no sense, LimitError for too many pixels."""
+    """What the first chunk says. Raises FormatError where it makes no sense, LimitError for more than max_pixels."""
     name = encoded[12:16]
     if name == b"CgBI":
         raise FormatError("a PNG as Apple's devices keep it (CgBI), which is not read: save it as PNG or JPEG")
@@ -124,8 +124,8 @@ def header(encoded: bytes, max_pixels: int) -> _Header:
 def _chunks(encoded: bytes) -> _Chunks:
     """Walk over the chunks behind the header.
 
-    Raises FormatError for one that is cut or has a wrong checksum and carries pixels. Any other is passed over; where
-    it has swallowed its successors, the next chunk that is whole is looked for.
+    Raises FormatError for a chunk that carries pixels and is cut or has a wrong checksum. Any other damaged chunk is
+    passed over; where its length cannot be right either, the next chunk that is whole is looked for.
     """
     chunks, at, size = _Chunks(), 33, len(encoded)
     while True:
@@ -163,13 +163,13 @@ def _chunks(encoded: bytes) -> _Chunks:
 
 
 def _begins_chunk(encoded: bytes, at: int) -> bool:
-    """Whether a chunk may begin there: it is within the file, and its name is made of letters."""
+    """Whether a chunk may begin at that place: it would lie within the file, and its name is made of letters."""
     length, name = struct.unpack_from(">I4s", encoded, at) if at + 12 <= len(encoded) else (0, b"")
     return name.isalpha() and at + 12 + length <= len(encoded)
 
 
 def _next_whole(encoded: bytes, at: int) -> int | None:
-    """The place of the next chunk that carries pixels, or is the end, and is whole."""
+    """The place of the next whole chunk that carries pixels or is IEND; None for no such chunk."""
     places = []
     for name in (*PIXELS, b"IEND"):
         place = encoded.find(name, at)
@@ -187,7 +187,7 @@ def _next_whole(encoded: bytes, at: int) -> int | None:
 
 
 class _Rows:
-    """The inflated rows, as many bytes at a time as are asked for; what is missing is white."""
+    """Inflates the rows, as many bytes at a time as are asked for. needed: bytes of all rows."""
 
     def __init__(self, encoded: bytes, spans: list[tuple[int, int]], needed: int, verdict: Verdict):
         self._pieces = (encoded[at : min(at + BAND, end)] for first, end in spans for at in range(first, end, BAND))
@@ -196,7 +196,7 @@ class _Rows:
         self._verdict, self._lost = verdict, False
 
     def read(self, size: int) -> bytearray:
-        """The next bytes, fewer where the rest is lost, which is told once."""
+        """The next bytes, fewer where the rest is lost; the verdict is told that once, and may raise FormatError."""
         filled = bytearray()
         try:
             while len(filled) < size and not self._lost:
@@ -214,7 +214,7 @@ class _Rows:
         return filled
 
     def _check_end(self) -> None:
-        """Read up to the checksum. More rows than are needed are not looked at: they may be a bomb."""
+        """Read on to the checksum. Rows beyond those needed are not read: there may be no end of them."""
         while not self._inflate.eof:
             piece = self._inflate.unconsumed_tail or next(self._pieces, b"")
             if not piece:
@@ -224,7 +224,7 @@ class _Rows:
                 return
 
     def bad_filter(self) -> None:
-        """A row's filter is none that there is."""
+        """Tell the verdict that a row's filter does not exist; it may raise FormatError."""
         self._lose(FormatError("damaged PNG photograph: a row's filter makes no sense"))
 
     def _lose(self, error: FormatError) -> None:
@@ -234,7 +234,7 @@ class _Rows:
 
 
 def _unpacked(packed: npt.NDArray[np.uint8], columns: int, header: _Header) -> npt.NDArray[Any]:
-    """Values (k, columns, channels) of rows of bytes, as they are stored."""
+    """The stored values (k, columns, channels) of unfiltered rows of bytes (k, s)."""
     if header.bits == 16:
         values: npt.NDArray[Any] = packed.view(">u2").astype(np.uint16)
     elif header.bits == 8:
@@ -246,7 +246,7 @@ def _unpacked(packed: npt.NDArray[np.uint8], columns: int, header: _Header) -> n
 
 
 def _raw_bands(columns: int, rows: int, header: _Header, source: _Rows) -> Iterator[npt.NDArray[Any] | int]:
-    """Bands of stored values of one pass; at the end the number of rows that are lost, if any are."""
+    """Bands of stored values of one pass; the last item is the number of rows that are lost, if any are."""
     stride = (columns * header.bits_per_pixel + 7) // 8
     above = np.zeros(stride, np.uint8)
     step = max(1, BAND // (stride + 1))
@@ -266,6 +266,7 @@ def _raw_bands(columns: int, rows: int, header: _Header, source: _Rows) -> Itera
 
 
 def _plain(header: _Header, source: _Rows, look: Any) -> Iterator[Any]:
+    """Bands of the picture of a file that is not interlaced. Rows that are lost are white."""
     for band in _raw_bands(header.width, header.height, header, source):
         if isinstance(band, int):  # lost
             blank = look(np.zeros((1, 1, CHANNELS[header.colour]), np.uint16 if header.bits == 16 else np.uint8))
@@ -277,7 +278,7 @@ def _plain(header: _Header, source: _Rows, look: Any) -> Iterator[Any]:
 
 
 def _interlaced(header: _Header, source: _Rows) -> Iterator[Any]:
-    """The stored values of all passes, put in their places. What is lost is 0, whatever that is."""
+    """The stored values (h, w, channels) of all passes, in one band. Those that are lost are 0."""
     depth = np.uint16 if header.bits == 16 else np.uint8
     values: npt.NDArray[Any] = np.zeros((header.height, header.width, CHANNELS[header.colour]), depth)
     for (x, y, step_x, step_y), columns, rows in header.passes():
@@ -291,7 +292,10 @@ def _interlaced(header: _Header, source: _Rows) -> Iterator[Any]:
 
 
 def _look(header: _Header, palette: bytes, clear: bytes | None) -> Any:
-    """What makes values of 8 or 16 bits, with alpha where something is transparent, of stored ones."""
+    """A function from stored values to values of 8 or 16 bits, with alpha if the file has a tRNS chunk.
+
+    palette, clear: the contents of PLTE and tRNS.
+    """
     white = 65535 if header.bits == 16 else 255
     if header.colour == 3:
         table = np.zeros((256, 4 if clear is not None else 3), np.uint8)
@@ -317,7 +321,7 @@ def _look(header: _Header, palette: bytes, clear: bytes | None) -> Any:
 
 
 def _meaning(found: dict[bytes, bytes], grey: bool, verdict: Verdict) -> Profile | None:
-    """What the chunks say of the colours, the one that goes before the others by the specification."""
+    """The profile of the colours, None for sRGB's: by cICP, iCCP, sRGB or gAMA, of which the first present decides."""
     if b"iCCP" in found and b"cICP" not in found:
         content = found[b"iCCP"]
         packed = content[content.find(b"\0") + 2 :] if b"\0" in content[:80] else b""

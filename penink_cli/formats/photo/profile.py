@@ -1,8 +1,8 @@
-"""What stored colours mean where it is not sRGB: a curve for each channel, and a matrix.
+"""What stored colours mean if they are not sRGB's: a curve for each channel, and a matrix.
 
-A value goes through its channel's curve to light, the light through the matrix to that of sRGB's red, green and blue,
-and these through sRGB's own curve (IEC 61966-2-1). Luma is then that of any other photograph, and tone is true to what
-a viewer that manages colours shows. Curves are tables, made once; no power is taken per pixel.
+A value goes through its channel's curve to light, the light through the matrix to light of sRGB's red, green and blue,
+and that through sRGB's own curve (IEC 61966-2-1). Luma is then taken as of any other photograph, and tone is true to
+what a viewer that manages colours shows. Curves are tables, made once; no power is taken for a pixel.
 """
 
 from __future__ import annotations
@@ -19,8 +19,8 @@ from penink_cli.ground.exact import power
 from penink_cli.ground.model import Floats
 
 STEPS = 1 << 16  # of the table of sRGB's curve
-SAME = 0.6 / 255  # a profile that moves no colour by more is sRGB's
-NEUTRAL = 0.02  # how far a matrix may be from keeping white white, to be made to
+SAME = 0.6 / 255  # a profile that moves no colour by more is taken for sRGB's
+NEUTRAL = 0.02  # a matrix that moves white by no more is made to keep it
 
 # Light of red, green and blue from CIE XYZ at the D50 white of profiles (sRGB primaries, adapted by Bradford).
 FROM_XYZ = (
@@ -39,7 +39,7 @@ def to_srgb(light: Floats) -> Floats:
 
 
 def from_srgb(value: Floats) -> Floats:
-    """Light of sRGB's value."""
+    """Light, 0 … 1, of sRGB's value 0 … 1."""
     return np.where(value <= 0.04045, value / 12.92, power((value + 0.055) / 1.055, 2.4))
 
 
@@ -51,7 +51,7 @@ class Profile:
     matrix: Matrix = IDENTITY
 
     def conversion(self, maxval: int) -> Callable[[npt.NDArray[Any]], npt.NDArray[Any]] | None:
-        """What turns bands (k, w, 1 or 3) of values up to maxval into sRGB's; None where they are that already."""
+        """A function from bands (k, w, 1 or 3) of values 0 … maxval to sRGB's values; None for sRGB's own profile."""
         if self._is_srgb():
             return None
         stored = np.arange(maxval + 1) / maxval
@@ -62,7 +62,7 @@ class Profile:
         coding = to_srgb(np.arange(STEPS + 1) / STEPS) * maxval
 
         def coded(light: Floats) -> npt.NDArray[Any]:
-            """The nearest values, between two steps of the table."""
+            """The nearest values of light 0 … 1, linear between two steps of sRGB's table."""
             place = np.clip(light, 0.0, 1.0) * STEPS
             step = np.minimum(place.astype(np.int64), STEPS - 1)
             low = coding[step]
@@ -86,14 +86,14 @@ class Profile:
         return convert
 
     def _neutral(self) -> Matrix:
-        """The matrix with white exactly white, where it nearly is."""
+        """The matrix, made to keep white if it nearly does."""
         sums = [a + b + c for a, b, c in self.matrix]
         if any(abs(total - 1.0) > NEUTRAL for total in sums):
             return self.matrix
         return tuple(tuple(x / total for x in row) for row, total in zip(self.matrix, sums, strict=True))
 
     def _is_srgb(self) -> bool:
-        """Whether no colour of a coarse lattice is moved by a level of 8 bits, or one of the greys."""
+        """Whether the profile moves no colour of a coarse lattice, and no grey, by more than SAME."""
         stored = np.arange(256) / 255.0
         for curve in self.curves:
             if np.abs(to_srgb(np.clip(curve(stored), 0.0, 1.0)) - stored).max() > SAME:
@@ -111,7 +111,10 @@ class Profile:
 
 
 def of_gamma(gamma: float, primaries: tuple[float, ...] | None = None) -> Profile | None:
-    """That of values which are light to the power gamma; primaries: x and y of white, red, green and blue."""
+    """The profile of values that are light to the power gamma; None where they are sRGB's.
+
+    primaries: x and y of white, red, green and blue, None for sRGB's.
+    """
     matrix = _of_primaries(primaries) if primaries else IDENTITY
     if abs(gamma - 1 / 2.2) < 0.005:  # how programs that mean sRGB say so
         return None if matrix is None or matrix == IDENTITY else Profile((from_srgb,) * 3, matrix)
@@ -123,7 +126,10 @@ def of_gamma(gamma: float, primaries: tuple[float, ...] | None = None) -> Profil
 
 
 def _of_primaries(xy: tuple[float, ...]) -> Matrix | None:
-    """To sRGB's light from that of primaries, by way of XYZ adapted to D50 (Bradford); None where there is none."""
+    """The matrix from light of primaries to sRGB's, by way of XYZ adapted to D50 (Bradford); None for no such matrix.
+
+    xy: x and y of white, red, green and blue.
+    """
     try:
         points = [(x / y, 1.0, (1.0 - x - y) / y) for x, y in zip(xy[::2], xy[1::2], strict=True)]
         white, columns = points[0], points[1:]

@@ -1,8 +1,8 @@
-"""TIFF: the one of its pictures that is meant, and of that only the tags that carry pixels go to the decoder.
+"""TIFF: one of its pictures is chosen, and only the tags of that one that carry pixels are given to the decoder.
 
-A file may hold a reduced image before the full one, several pages, or a camera's raw values that only a raw developer
-can read beside previews of them. The directory of the picture chosen is written anew behind the file, without text,
-profiles and whatever else has no pixels, and the header is made to point to it.
+A file may hold a reduced image before the full one, several pages, or a camera's raw values, which only a raw developer
+can read, beside previews. The directory of the chosen picture is written anew behind the file, without text, profiles
+and whatever else has no pixels, and the header is made to point to it.
 """
 
 from __future__ import annotations
@@ -20,8 +20,9 @@ from penink_cli.formats.photo.icc import MOST, profile_of
 from penink_cli.formats.photo.pillow import PART, decoded, with_meaning
 from penink_cli.ground.errors import FormatError
 
+# Bytes of a value of each type.
 SIZES = {1: 1, 2: 1, 3: 2, 4: 4, 5: 8, 6: 1, 7: 1, 8: 2, 9: 4, 10: 8, 11: 4, 12: 8, 13: 4, 16: 8, 17: 8, 18: 8}
-WHOLE = {1: "B", 3: "H", 4: "I", 13: "I", 16: "Q", 18: "Q"}  # types that are whole numbers
+WHOLE = {1: "B", 3: "H", 4: "I", 13: "I", 16: "Q", 18: "Q"}  # types of whole numbers, as `struct` has them
 REDUCED, WIDTH, HEIGHT, BITS, COMPRESSION, PHOTOMETRIC = 254, 256, 257, 258, 259, 262
 STRIPS, ORIENTATION, COUNTS, PLANES, OLD_KIND, OTHERS = 273, 274, 279, 284, 255, 330
 SAMPLES, ROWS, TILE_WIDTH, TILE_HEIGHT, TILES, TILE_COUNTS = 277, 278, 322, 323, 324, 325
@@ -32,20 +33,24 @@ PIXELS = (
 )  # fmt: skip
 RAW = (32803, 34892)  # a mosaic of colour filters; values before a camera's colours are made of them
 MOST_DIRECTORIES, MOST_ENTRIES, MOST_VALUES = 64, 4096, 64
-ALIKE = 0.02  # pictures of one scene have the same proportions
-LARGER = 1.5
+ALIKE = 0.02  # by no more the proportions of two pictures of one scene differ
+LARGER = 1.5  # times as wide, a later page of the same scene is chosen instead of the first
 
 
 @dataclass(eq=False)
 class _Directory:
-    """One picture's tags: type, count and the entry's bytes; and the values of short whole numbers."""
+    """One picture's tags.
+
+    in_chain: whether it is a page, and not a picture within another. entries: each tag's type, count and entry (bytes).
+    values: of tags that hold up to MOST_VALUES whole numbers.
+    """
 
     in_chain: bool
     entries: dict[int, tuple[int, int, bytes]] = field(default_factory=dict)
     values: dict[int, tuple[int, ...]] = field(default_factory=dict)
     width: int = 0
     height: int = 0
-    jpeg: tuple[int, int] | None = None  # a whole JPEG file in it: from, up to
+    jpeg: tuple[int, int] | None = None  # where a whole JPEG file in place of pixels begins and ends
 
     def one(self, tag: int, other: int = 0) -> int:
         """The first value of a tag."""
@@ -54,24 +59,27 @@ class _Directory:
 
     @property
     def reduced(self) -> bool:
-        """Whether it says of itself that it is a smaller version of another."""
+        """Whether the picture is declared a smaller version of another."""
         return bool(self.one(REDUCED) & 1) or self.one(OLD_KIND) == 2
 
     @property
     def mask(self) -> bool:
+        """Whether the picture is a mask of another, or a map of depth."""
         return bool(self.one(REDUCED) & 4) or self.one(PHOTOMETRIC) in (4, 51177, 52527)
 
     @property
     def raw(self) -> bool:
+        """Whether the pixels are a camera's raw values."""
         return self.one(PHOTOMETRIC) in RAW
 
     @property
     def area(self) -> int:
+        """Pixels."""
         return self.width * self.height
 
 
 def read(encoded: bytes, max_pixels: int, verdict: Verdict) -> Decoded:
-    """The picture of a TIFF that is meant; a line where it is not the first and only one.
+    """The chosen picture of a TIFF (see `_choose`); a line says where there was a choice.
 
     Raises FormatError and LimitError.
     """
@@ -87,8 +95,8 @@ def read(encoded: bytes, max_pixels: int, verdict: Verdict) -> Decoded:
         picture = jpeg.read(encoded[chosen.jpeg[0] : chosen.jpeg[1]], max_pixels, verdict)
         return with_meaning(picture, picture.profile, picture.orientation if picture.orientation != 1 else turned)
     bits = chosen.values.get(BITS, (1,))
-    if chosen.one(PLANES) == 2 and max(bits) > 8:
-        raise FormatError("TIFF photograph of more than 8 bits in separate planes")  # which Pillow mixes up
+    if chosen.one(PLANES) == 2 and max(bits) > 8:  # Pillow mixes such planes up
+        raise FormatError("TIFF photograph of more than 8 bits in separate planes; in one plane it is read")
     _check_pixels(encoded, chosen, order, big, verdict)
     picture = decoded(
         _clean(encoded, chosen, order, big),
@@ -103,7 +111,7 @@ def read(encoded: bytes, max_pixels: int, verdict: Verdict) -> Decoded:
 
 
 def _directories(encoded: bytes, order: str, big: bool) -> list[_Directory]:
-    """All pictures of the file, those in pictures after these."""
+    """All pictures of the file, first the pages, then the pictures within them. Raises FormatError."""
     if len(encoded) < 16:
         raise FormatError("truncated: the TIFF has no directory")
     first = _fields(f"{order}8xQ" if big else f"{order}4xI", encoded, 0)[0]
@@ -129,7 +137,10 @@ def _directories(encoded: bytes, order: str, big: bool) -> list[_Directory]:
 
 
 def _directory(encoded: bytes, at: int, order: str, big: bool, in_chain: bool) -> tuple[_Directory, int]:
-    """A directory, and the place of the next; an entry that makes no sense is as if it were not there."""
+    """A directory, and the place of the next one; an entry of an unknown type is left out.
+
+    Raises FormatError for too many entries, struct.error where the file ends within them.
+    """
     directory = _Directory(in_chain)
     count, size = _fields(f"{order}Q" if big else f"{order}H", encoded, at)[0], 20 if big else 12
     begin = at + (8 if big else 2)
@@ -137,7 +148,7 @@ def _directory(encoded: bytes, at: int, order: str, big: bool, in_chain: bool) -
         raise FormatError(f"damaged TIFF photograph: a directory of {count} entries")
     for i in range(count):
         entry = encoded[begin + size * i : begin + size * (i + 1)]
-        tag, kind, number = _fields(f"{order}HHQ8x" if big else f"{order}HHI4x", entry, 0)  # all of it, the value too
+        tag, kind, number = _fields(f"{order}HHQ8x" if big else f"{order}HHI4x", entry, 0)  # with its value
         if kind in SIZES:
             directory.entries[tag] = kind, number, entry
             if kind in WHOLE and 0 < number <= MOST_VALUES:
@@ -154,15 +165,15 @@ def _directory(encoded: bytes, at: int, order: str, big: bool, in_chain: bool) -
 
 
 def _fields(form: str, encoded: bytes, at: int) -> tuple[Any, ...]:
-    """What stands at a place that the file names; struct.error where the file ends before.
+    """The fields at a place that the file names. Raises struct.error where the file ends before their end.
 
-    A place in a BigTIFF has 64 bits: unpack_from raises OverflowError for one beyond 2^63, a slice is merely empty.
+    A place in a BigTIFF has 64 bits. For one beyond 2^63 `unpack_from` would raise OverflowError; a slice is empty.
     """
     return struct.unpack(form, encoded[at : at + struct.calcsize(form)])
 
 
 def _content(encoded: bytes, entry: tuple[int, int, bytes], order: str, big: bool) -> bytes:
-    """The bytes of an entry's values, within it or elsewhere."""
+    """The bytes of an entry's values, which lie within the entry or elsewhere; MOST of them at the most."""
     kind, number, text = entry
     size, inline = number * SIZES[kind], text[12:] if big else text[8:]
     if size <= len(inline):
@@ -172,7 +183,7 @@ def _content(encoded: bytes, entry: tuple[int, int, bytes], order: str, big: boo
 
 
 def _find_jpeg(directory: _Directory, encoded: bytes) -> None:
-    """Note a whole JPEG file in the place of pixels, as cameras put their previews."""
+    """Note a whole JPEG file in the place of pixels: so cameras store previews."""
     if directory.one(COMPRESSION, 6) != 6:
         return
     at, length = directory.one(JPEG_AT), directory.one(JPEG_BYTES)
@@ -186,7 +197,10 @@ def _find_jpeg(directory: _Directory, encoded: bytes) -> None:
 
 
 def _choose(directories: list[_Directory], encoded: bytes, verdict: Verdict) -> _Directory:
-    """The picture that is meant."""
+    """The picture to read: of a camera raw the largest preview, else the first page, or a larger one of the same scene.
+
+    A reduced image is chosen only where there is no other. Raises FormatError for a camera raw without a preview.
+    """
     first = directories[0]
     raws = [d for d in directories if d.raw]
     readable = [d for d in directories if not d.raw and not d.mask and (d.area or d is first)]
@@ -220,13 +234,15 @@ def _choose(directories: list[_Directory], encoded: bytes, verdict: Verdict) -> 
 
 
 def _alike(a: _Directory, b: _Directory) -> bool:
+    """Whether two pictures have the same proportions."""
     return abs(a.width * b.height - b.width * a.height) <= ALIKE * a.width * b.height
 
 
 def _check_pixels(encoded: bytes, chosen: _Directory, order: str, big: bool, verdict: Verdict) -> None:
-    """Raise FormatError where the file ends before its pixels do, or where strips or tiles of them are missing.
+    """Raise FormatError where the file ends before its pixels do, or where strips or tiles are missing.
 
-    Pillow is content with those that there are. Where next to nothing is there, nothing is left to be read.
+    Pillow decodes those that are there without a word. The verdict may let that pass, but not where less than one in
+    PART is there.
     """
     tiled = TILES in chosen.entries
     places, counts = (TILES, TILE_COUNTS) if tiled else (STRIPS, COUNTS)
@@ -260,14 +276,17 @@ def _up(number: int, step: int) -> int:
 
 
 def _numbers(encoded: bytes, entry: tuple[int, int, bytes], order: str, big: bool) -> np.ndarray:
-    """The whole numbers of an entry, however many."""
+    """The whole numbers (n,) of an entry, however many, as doubles."""
     content = _content(encoded, entry, order, big)
     size = SIZES[entry[0]]
     return np.frombuffer(content[: len(content) // size * size], f"{order}u{size}").astype(np.float64)
 
 
 def _clean(encoded: bytes, chosen: _Directory, order: str, big: bool) -> bytes:
-    """The file with one directory more, which is the first and the last: the picture chosen, its pixels' tags alone."""
+    """The file with a new directory at its end, the only one: the tags of the chosen picture's pixels.
+
+    Raises FormatError for a file of more than 4 GB.
+    """
     entries = [chosen.entries[tag][2] for tag in sorted(chosen.entries) if tag in PIXELS]
     at = len(encoded) + len(encoded) % 2
     if not big and at >= 1 << 32:

@@ -1,4 +1,4 @@
-"""WebP: of its container (RIFF) only the chunks that carry pixels go to the decoder."""
+"""WebP (RIFF): only the chunks that carry pixels are given to the decoder."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def read(encoded: bytes, max_pixels: int, verdict: Verdict) -> Decoded:
         found.setdefault(name, []).append(content)
         at += 8 + length + length % 2
         if name in (b"VP8 ", b"VP8L"):
-            end = size  # metadata may follow, whatever the length in the header says
+            end = size  # chunks behind the length that the header declares may be metadata, and are read too
     if not any(name in found for name in (b"VP8 ", b"VP8L", b"ANMF")):
         raise FormatError("damaged WebP photograph, or one cut short: it has no pixels")
     if scar and (b"ALPH" not in found or b"VP8 " in found):
@@ -49,7 +49,7 @@ def read(encoded: bytes, max_pixels: int, verdict: Verdict) -> Decoded:
 
 
 def _clean(found: dict[bytes, list[bytes]]) -> bytes:
-    """A file of the pixels alone."""
+    """A file of the pixels alone. found: the content of all chunks by their names."""
     pixels = b"VP8L" if b"VP8L" in found else b"VP8 "
     chunks = [(pixels, found[pixels][0])]
     extended = found.get(b"VP8X", [b""])[0]
