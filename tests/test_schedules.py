@@ -8,6 +8,7 @@ from __future__ import annotations
 import hashlib
 import random
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
@@ -47,7 +48,18 @@ def play(monkeypatch: pytest.MonkeyPatch, order: Order | None) -> None:
         done = {number: waiting[number]() for number in order(len(waiting))}
         yield from (done[number] for number in range(len(waiting)))
 
+    @contextmanager
+    def meanwhile(work: Callable[[], Any], count: int) -> Iterator[Callable[[], Any]]:
+        if order is None:
+            with one_thread(work, 1) as result:
+                yield result
+            return
+        done = work()
+        yield lambda: done
+
+    one_thread = threads.meanwhile
     monkeypatch.setattr(threads, "in_order", in_order)
+    monkeypatch.setattr(threads, "meanwhile", meanwhile)
     monkeypatch.setattr(threads, "count", lambda asked: 3)
 
 
@@ -101,3 +113,23 @@ def test_any_order_of_the_threads_finds_the_same_edges(monkeypatch):
             edges = detect_edges(grey, high=0.1)
             found.add((edges.vertices.tobytes(), edges.edges.tobytes()))
     assert len(found) == 1
+
+
+@pytest.mark.parametrize("count", [1, 2])
+def test_what_is_done_meanwhile_is_done_once_and_its_error_is_raised_where_it_is_asked_for(count):
+    done = []
+
+    def work():
+        done.append(1)
+        return 7
+
+    with threads.meanwhile(work, count) as result:
+        assert (result(), result()) == (7, 7)
+    assert done == [1]
+    with threads.meanwhile(lambda: done.append(2), count):
+        pass
+    assert done in ([[1]] if count == 1 else [[1], [1, 2]])  # what has begun has ended with the block
+    with threads.meanwhile(lambda: 1 // 0, count):
+        pass
+    with pytest.raises(ZeroDivisionError), threads.meanwhile(lambda: 1 // 0, count) as result:
+        result()

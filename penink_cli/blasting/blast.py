@@ -9,7 +9,8 @@ import numpy as np
 
 from penink_cli.blasting import hatching, rules
 from penink_cli.blasting.sheet import Sheet, resample
-from penink_cli.blasting.task import Task
+from penink_cli.blasting.task import Task, read_field
+from penink_cli.ground import threads as threading
 from penink_cli.ground.errors import ParameterError
 from penink_cli.ground.model import Directions, EdgeList, Floats, Lines, Strokes, Texture
 from penink_cli.ground.recall import recalled
@@ -67,20 +68,25 @@ def blast(
         from penink_cli.blasting.restoring import restored
 
         tone = restored(tone, true, width_pt, height_pt, threads or 1)
-    told = None
-    if lines is not None:
-        from penink_cli.blasting import telling  # needs the rooms of lines and composition
+    workers = threads or 1
+    # That is loops for a fifth of the time; what else has to be done before hatching hardly uses a second thread.
+    with threading.meanwhile(
+        lambda: read_field(directions, edges, width_pt, height_pt, workers), workers if chosen.follows(texture) else 1
+    ) as field:
+        told = None
+        if lines is not None:
+            from penink_cli.blasting import telling  # needs the rooms of lines and composition
 
-        bare, shown = tone, lines
-        tone, told = recalled(
-            "telling", (bare, width_pt, height_pt, shown, outlines),
-            lambda: telling.told(bare, width_pt, height_pt, shown, outlines, threads or 1),
+            bare, shown = tone, lines
+            tone, told = recalled(
+                "telling", (bare, width_pt, height_pt, shown, outlines),
+                lambda: telling.told(bare, width_pt, height_pt, shown, outlines, workers),
+            )  # fmt: skip
+        task = Task(
+            tone, width_pt, height_pt, edges, texture, seed, pen_pt, device_dpi, outlines, field, told, swell,
+            natural_pt, solid, workers, tick,
         )  # fmt: skip
-    task = Task(
-        tone, width_pt, height_pt, edges, texture, seed, pen_pt, device_dpi, outlines, directions, told, swell,
-        natural_pt, solid, threads or 1, tick,
-    )  # fmt: skip
-    strokes: Strokes = chosen.draw(task)
+        strokes: Strokes = chosen.draw(task)
     tick()
     return replace(strokes, texture=texture.name, seed=seed, device_dpi=device_dpi)
 

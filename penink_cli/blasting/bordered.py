@@ -15,7 +15,7 @@ from penink_cli.blasting import curve_fitting, curves, marks
 from penink_cli.blasting._compiled import contours as _marching
 from penink_cli.blasting.gaps import Gaps
 from penink_cli.composition.filters import Picture
-from penink_cli.ground.masks import labelled, near
+from penink_cli.ground.masks import near, parts, sizes
 from penink_cli.ground.model import Floats
 
 #: The border is told by places STEP_PT apart, and every place by its neighbours, ROUNDS times: it is known to about
@@ -205,7 +205,7 @@ def _thin(inside: marks.Mask, half: float, px: float) -> marks.Mask:
     thin = inside & ~near(~deep, half * px + 1.0)
     if not thin.any():
         return thin
-    part, boxes = labelled(thin)
-    size = np.bincount(part.ravel(), minlength=len(boxes) + 1)
+    part, count = parts(thin)
+    size = sizes(part, count, thin)
     thin &= size[part] >= LEAST_THIN_PT2 * px * px
     return np.asarray(inside & (thin | near(~thin, half * px + 1.5, strictly=True)))

@@ -40,6 +40,8 @@ SINGLE = 0.06
 SWEEPS, ROUNDS = 2, 3
 #: The least bare part of a cell for which a layer's density is reckoned: ink that covers nearly all asks for no lines.
 BARE = 0.05
+#: Cells of a sheet on which all layers are laid at once.
+AT_ONCE = 1 << 18
 #: SWEEPS for a set of strokes: laid again it is no truer, and takes as long again.
 SET_SWEEPS = 1
 #: The part of the error that the next sweep's density takes up.
@@ -95,10 +97,15 @@ class Hatch:
 
     def laid(self, sheet: Sheet, covers: list[Floats]) -> list[candidates.Candidates]:
         """The strokes of all layers that cover each cell (rows, columns) as asked."""
-        if self.form is not None and not self.form.lays_lines:  # a set's passes know of no threads: they run at once
-            passes = [partial(self.swept, sheet, i, cover) for i, cover in enumerate(covers)]
+        passes = [partial(self._pass, sheet, i, covers) for i in range(len(self.layers))]
+        # a set's passes know of no threads; in bands there is not enough to do on a small sheet, or much to do twice
+        if (self.form is not None and not self.form.lays_lines) or sheet.rows * sheet.columns <= AT_ONCE:
             return list(threading.in_order(iter(passes), sheet.threads, ahead=len(passes)))
-        return [self.swept(sheet, i, covers.pop(0)) for i in range(len(self.layers))]
+        return [each() for each in passes]
+
+    def _pass(self, sheet: Sheet, i: int, covers: list[Floats]) -> candidates.Candidates:
+        cover, covers[i] = covers[i], covers[i][:0]  # frees it when it has been used
+        return self.swept(sheet, i, cover)
 
     def swept(self, sheet: Sheet, i: int, cover: Floats) -> candidates.Candidates:
         """The strokes of layer i that cover each cell (rows, columns) as asked."""

@@ -17,7 +17,7 @@ from penink_cli.blasting.form import Form
 from penink_cli.blasting.gaps import Gaps
 from penink_cli.blasting.sheet import CELL_PT, Cells, Sheet, look_up, resample
 from penink_cli.composition.filters import Picture, blurred
-from penink_cli.ground.masks import labelled, sizes
+from penink_cli.ground.masks import parts, sizes
 from penink_cli.ground.model import EdgeList, HatchLayer, Strokes
 
 #: Width of a white line, points.
@@ -47,8 +47,8 @@ def white_lines(
     within: Picture = resample((value > marks.LEVEL).astype(np.float64), sheet.rows, sheet.columns).astype(np.float32)
     white = blurred((1 - sheet.tone) * within, AROUND_PT / CELL_PT)
     white /= np.maximum(blurred(within, AROUND_PT / CELL_PT), np.float32(1e-3))
-    part, boxes = labelled(white > LEAST)
-    large = sizes(part, len(boxes), part > 0) >= ALONE_PT2 / CELL_PT**2
+    part, count = parts(white > LEAST)
+    large = sizes(part, count, part > 0) >= ALONE_PT2 / CELL_PT**2
     large[0] = False
     white = np.where(large[part], np.minimum(white, np.float32(MOST)), np.float32(0))
     room = np.where(within > 0.99, white, np.float32(0))

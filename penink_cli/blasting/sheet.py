@@ -88,14 +88,18 @@ def halve(values: Cells) -> Cells:
     return ((values[::2, ::2] + values[1::2, ::2]) + (values[::2, 1::2] + values[1::2, 1::2])) * quarter
 
 
+def cells(width_pt: float, height_pt: float) -> tuple[int, int]:
+    """Rows and columns of the cells of a sheet of width × height points."""
+    return max(1, round(height_pt / CELL_PT)), max(1, round(width_pt / CELL_PT))
+
+
 class Sheet:
     """A sheet of width × height points that wants `tone` ((h, w) ink coverage 0 … 1, any size)."""
 
     def __init__(self, tone: Floats, width_pt: float, height_pt: float, gain_pt: float, threads: int = 1):
         self.width = width_pt
         self.height = height_pt
-        self.columns = max(1, round(width_pt / CELL_PT))
-        self.rows = max(1, round(height_pt / CELL_PT))
+        self.rows, self.columns = cells(width_pt, height_pt)
         #: subpixels per point, x and y; they differ by less than a percent save on tiny sheets
         self.scale = np.array([8.0 * self.columns / width_pt, 8.0 * self.rows / height_pt])
         self.pitch = float(self.scale[0] + self.scale[1]) / 2.0

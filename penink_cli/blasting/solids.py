@@ -10,14 +10,17 @@ strokes no texture leaves out.
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 
 from penink_cli.blasting import bordered, marks
 from penink_cli.blasting.gaps import Gaps
 from penink_cli.blasting.light import LightThings
 from penink_cli.blasting.sheet import Cells, resample
-from penink_cli.composition.filters import Picture, blurred
-from penink_cli.ground.masks import labelled, near, sizes
+from penink_cli.composition.filters import Picture, blurred, by_rows
+from penink_cli.ground import threads as threading
+from penink_cli.ground.masks import near, parts, sizes
 from penink_cli.ground.model import Floats, Strokes
 
 #: The tone from which on it is black where a texture ends in black, and where one can be as dark as DARKEST itself.
@@ -71,7 +74,7 @@ def filled(
 
 def found(
     tone: Floats, width_pt: float, height_pt: float, ink: Cells, black: float = BLACK,
-    light: LightThings | None = None, everywhere: bool = True, broad: float = 1.0,
+    light: LightThings | None = None, everywhere: bool = True, broad: float = 1.0, threads: int = 1,
 ) -> Picture | None:  # fmt: skip
     """What is as good as black in the tone (h, w): an image that exceeds `marks.LEVEL` there; None for nothing.
 
@@ -91,117 +94,137 @@ def found(
     alone = None
     if light and not everywhere:
         alone = resample(light.within(BESIDE_PT).astype(np.float64), h, w) > 0.5
-    return _dark(tone, px, (black, broad), close, alone, ink)
+    return _dark(tone, px, (black, broad), close, alone, ink, threads)
 
 
 def _dark(
-    tone: Floats, px: float, black: tuple[float, float], close: marks.Mask | None, alone: marks.Mask | None, ink: Cells
-) -> Picture:
+    tone: Floats, px: float, black: tuple[float, float], close: marks.Mask | None, alone: marks.Mask | None, ink: Cells,
+    threads: int,
+) -> Picture:  # fmt: skip
     """A tone (h, w) that exceeds `marks.LEVEL` where it is to be filled, and is 0 where nothing is near.
 
     px: pixels in a point. black: the two tones of `found`; ink: as there.
     close: what is close to small light things, where there are any.
     alone: the only places that may be filled, None for all.
     """
-    value, smooth, begins = _values(tone, px, black, close, alone is None)
+    value, smooth, begins = _values(tone, px, black, close, alone is None, threads)
     if alone is not None:
         value[~alone] = 0.0
     core = smooth > begins
     blots = None
     if alone is None:
-        deep = blurred(smooth, WIDE_PT * px, 1) >= AROUND  # dark all around
-        blots = _blots(smooth, core, deep, begins, px)
-        value[_flecks(value, smooth, px)] = np.nextafter(np.float32(marks.LEVEL), np.float32(1))
+        blots, flecks = threading.at_once(
+            partial(_blots, smooth, core, begins, px), partial(_flecks, value, smooth, px), threads=threads
+        )
+        value[flecks] = np.nextafter(np.float32(marks.LEVEL), np.float32(1))
     del smooth, begins
     inside = value > marks.LEVEL
-    part, boxes = labelled(inside)
-    area, size = (sizes(part, len(boxes), mask) for mask in (core, inside))
+    part, count = parts(inside)
+    area, size = (sizes(part, count, mask) for mask in (core, inside))
     keep = area >= LEAST_PT2 * px * px
     h, w = tone.shape
     rows, columns = np.arange(h) * ink.shape[0] // h, np.arange(w) * ink.shape[1] // w
-    keep &= sizes(part, len(boxes), (ink > marks.INKED)[rows][:, columns]) < marks.INKED * size
+    keep &= sizes(part, count, (ink > marks.INKED)[rows][:, columns]) < marks.INKED * size
     if blots is not None:
-        keep &= sizes(part, len(boxes), blots) < 0.5 * area
+        keep &= sizes(part, count, blots) < 0.5 * area
     keep[0] = False
-    value[~near(~keep[part], 1.5, strictly=True)] = 0.0  # up to the places between which the border lies
+    # up to the places between which the border lies
+    value[~near(~keep[part], 1.5, strictly=True, threads=threads)] = 0.0
     return np.clip(value, 0, 1, out=value)
 
 
 def _values(
-    tone: Floats, px: float, black: tuple[float, float], close: marks.Mask | None, everywhere: bool
-) -> tuple[Picture, Picture, Picture | np.float32]:
+    tone: Floats, px: float, black: tuple[float, float], close: marks.Mask | None, everywhere: bool, threads: int
+) -> tuple[Picture, Picture, Picture]:
     """How black it is, of which more than `marks.LEVEL` is; the tone, smoothed; the tone that black begins with."""
     tones: Picture = tone.astype(np.float32)  # of single precision: the whole sheet is looked at several times
     fall = FALLS_PT * px
-    smooth = blurred(tones, SMOOTH_PT * px, 1)
+    smooth = blurred(tones, SMOOTH_PT * px, threads)
     if everywhere:
-        smooth = _without_grain(smooth, px)
-    begins = np.float32(black[0]) if black[1] >= black[0] else _begins(smooth, *black, px)
-    falls = near(smooth >= LIGHT, fall, strictly=True) & near(smooth <= begins, fall, strictly=True)
-    value = smooth - begins
-    # how much darker a place is than what black begins with there, half way up or down where it does
-    darker = np.where(smooth > marks.LEVEL, np.maximum(tones, smooth), tones)  # smoothed outside, it would reach out
-    darker -= marks.LEVEL
-    np.copyto(value, darker, where=falls)
-    value += marks.LEVEL
+        smooth = _without_grain(smooth, px, threads)
+    if black[1] >= black[0]:
+        begins = np.broadcast_to(np.float32(black[0]), smooth.shape)
+    else:
+        begins = _begins(smooth, *black, px, threads)
+    falls = near(smooth >= LIGHT, fall, strictly=True, threads=threads)
+    falls &= near(smooth <= begins, fall, strictly=True, threads=threads)
+
+    def blackness(tones: Picture, smooth: Picture, begins: Picture, falls: marks.Mask) -> Picture:
+        value = smooth - begins
+        # how much darker a place is than what black begins with there, half way up or down where it does
+        # (smoothed outside, it would reach out)
+        darker = np.where(smooth > marks.LEVEL, np.maximum(tones, smooth), tones) - np.float32(marks.LEVEL)
+        np.copyto(value, darker, where=falls)
+        value += marks.LEVEL
+        return value
+
+    value = by_rows(blackness, tones, smooth, begins, falls, threads=threads)
     if close is not None:
         np.copyto(value, tones, where=close & falls)  # smoothed, it would be smaller
     return value, smooth, begins
 
 
-def _without_grain(tone: Picture, px: float) -> Picture:
+def _without_grain(tone: Picture, px: float, threads: int) -> Picture:
     """The tone (h, w), in the dark as it is around but for what differs more than grain; px: pixels in a point.
 
     Beside light things it stays as it is: they have borders of their own.
     """
-    dark = ~near(tone >= LIGHT, FALLS_PT * px)
-    around = blurred(tone * dark, WIDE_PT * px, 1)
-    around /= np.maximum(blurred(dark.astype(np.float32), WIDE_PT * px, 1), 1e-6)
-    rest = tone - around
-    rest -= np.clip(rest, -NOISE, NOISE)
-    around += rest
-    np.copyto(around, tone, where=~dark)
-    return around
+    dark = ~near(tone >= LIGHT, FALLS_PT * px, threads=threads)
+    total = blurred(tone * dark, WIDE_PT * px, threads)
+    weight = blurred(dark.astype(np.float32), WIDE_PT * px, threads)
+
+    def smoothed(tone: Picture, total: Picture, weight: Picture, dark: marks.Mask) -> Picture:
+        around = np.asarray(total / np.maximum(weight, np.float32(1e-6)), np.float32)
+        rest = tone - around
+        rest -= np.clip(rest, -NOISE, NOISE)
+        around += rest
+        np.copyto(around, tone, where=~dark)
+        return around
+
+    return by_rows(smoothed, tone, total, weight, dark, threads=threads)
 
 
-def _opened(mask: marks.Mask, radius: float) -> marks.Mask:
-    """The discs of that radius, pixels, that a mask (h, w) has room for."""
-    return near(near(mask, radius), radius)
-
-
-def _begins(smooth: Picture, black: float, broad: float, px: float) -> Picture:
+def _begins(smooth: Picture, black: float, broad: float, px: float, threads: int) -> Picture:
     """The tone (h, w) that black begins with, of which there is to be more where it is broad and has an outline.
 
     smooth: (h, w) the tone. px: pixels in a point.
     """
-    calm = blurred(smooth, CALM_PT * px, 1)
-    begins = np.full(smooth.shape, black, np.float32)
-    for least, share in ((broad, 0.0), (THING, MOSTLY)):
-        part, boxes = labelled(_opened(calm > np.float32(least), ROOM_PT / 2 * px))
-        area, dark = (sizes(part, len(boxes), some) for some in (part > 0, calm > np.float32(broad)))
-        border = (part > 0) & near(part > 0, 1.0)
-        outline = border & near(smooth >= np.float32(least - FALL), OUTLINE_PT * px)
-        length, told = (sizes(part, len(boxes), some) for some in (border, outline))
+    calm = blurred(smooth, CALM_PT * px, threads)
+
+    def things(least: float, share: float) -> marks.Mask:
+        """Where there is a thing that is so dark."""
+        room, some = ROOM_PT / 2 * px, calm > np.float32(least)
+        for _ in range(2):  # the discs that there is room for
+            some = near(some, room, threads=threads)
+        part, count = parts(some)
+        area, dark = (sizes(part, count, each) for each in (some, calm > np.float32(broad)))
+        border = some & near(some, 1.0, threads=threads)
+        outline = border & near(smooth >= np.float32(least - FALL), OUTLINE_PT * px, threads=threads)
+        length, told = (sizes(part, count, each) for each in (border, outline))
         chosen = (area >= BROAD_PT2 * px * px) & (told >= OUTLINED * length) & (dark >= share * area)
         chosen[0] = False
-        begins[chosen[part]] = least
+        return np.asarray(chosen[part])
+
+    begins = np.full(smooth.shape, black, np.float32)
+    whole, mostly = threading.at_once(lambda: things(broad, 0.0), lambda: things(THING, MOSTLY), threads=threads)
+    begins[whole] = broad
+    begins[mostly] = THING
     # and what little hatching there would be amid it
-    hole, boxes = labelled(begins == np.float32(black))
-    size, light = (sizes(hole, len(boxes), some) for some in (hole > 0, calm < THING))
-    begins[((size < HOLE_PT2 * px * px) & (light == 0))[hole] & (hole > 0)] = THING
+    hatched = begins == np.float32(black)
+    hole, count = parts(hatched)
+    size, light = (sizes(hole, count, some) for some in (hatched, calm < THING))
+    begins[((size < HOLE_PT2 * px * px) & (light == 0))[hole] & hatched] = THING
     return begins
 
 
-def _blots(tone: Picture, core: marks.Mask, deep: marks.Mask, black: Picture | np.float32, px: float) -> marks.Mask:
-    """The black in the dark that is too little of it to be filled, (h, w).
-
-    core: where the tone exceeds `black`; deep: where it is dark all around.
-    """
-    of, boxes = labelled(core)
-    little = (sizes(of, len(boxes), core) < BLOT_PT2 * px * px)[of]
-    thing, boxes = labelled(tone > black - np.float32(NEARLY))
-    whole, dark = (sizes(thing, len(boxes), mask) for mask in (thing > 0, core))
+def _blots(tone: Picture, core: marks.Mask, black: Picture, px: float) -> marks.Mask:
+    """The black in the dark that is too little of it to be filled, (h, w); core: where the tone exceeds `black`."""
+    of, count = parts(core)
+    little = (sizes(of, count, core) < BLOT_PT2 * px * px)[of]
+    thing, count = parts(tone > black - np.float32(NEARLY))
+    whole, dark = (sizes(thing, count, mask) for mask in (thing > 0, core))
     little |= (dark < SHARE * whole)[thing]
+    deep = blurred(tone, WIDE_PT * px, 1) >= AROUND  # dark all around
     return np.asarray(core & little & deep)
 
 
@@ -211,9 +234,10 @@ def _flecks(value: Picture, tone: Picture, px: float) -> marks.Mask:
     Beside light things the black has its grain, so that the smallest are filled however dark: they would be beads
     along its border, as hatching has no room in them.
     """
-    hole, boxes = labelled(value <= marks.LEVEL)
-    size = sizes(hole, len(boxes), hole > 0)
-    lightest = [sizes(hole, len(boxes), tone < least) == 0 for least in (AROUND, marks.LEVEL)]
+    empty = value <= marks.LEVEL
+    hole, count = parts(empty)
+    size = sizes(hole, count, empty)
+    lightest = [sizes(hole, count, tone < least) == 0 for least in (AROUND, marks.LEVEL)]
     little = [size < area * px * px for area in (FLECK_PT2, BEAD_PT2)]
     fleck = (lightest[0] & little[0]) | (lightest[1] & little[1])
     fleck[0] = False

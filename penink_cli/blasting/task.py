@@ -4,18 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
+from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
 from penink_cli.blasting import curves, hatching, marks, solids
 from penink_cli.blasting.light import LightThings
-from penink_cli.blasting.sheet import Cells, Sheet, coverage, resample
+from penink_cli.blasting.sheet import Cells, Sheet, cells, coverage, resample
 from penink_cli.ground.angles import direction
 from penink_cli.ground.device import MEAN
 from penink_cli.ground.model import Directions, EdgeList, Floats, Strokes, Texture
 from penink_cli.ground.recall import recalled
+
+#: Cosine and sine of twice the angle of a field in each cell of a sheet, (rows, columns).
+Field: TypeAlias = tuple[Cells, Cells]
 
 #: The broadest pen that small dark things are filled with.
 MARK_PT = 0.5
@@ -29,10 +32,24 @@ ALMOST = 0.99
 ANGLE = -45.0
 
 
+def read_field(
+    directions: Directions | None, edges: EdgeList | None, width_pt: float, height_pt: float, threads: int
+) -> Field | None:
+    """The directions on a sheet of that size."""
+    if directions is None:
+        return None
+    from penink_cli.directions.reading import at_size  # the reconstruction is not needed otherwise
+
+    told = directions, edges, *cells(width_pt, height_pt)
+    field = recalled("field", told, lambda: at_size(*told, threads, confident=False))
+    return np.asarray(field.cos2, np.float32), np.asarray(field.sin2, np.float32)
+
+
 @dataclass(frozen=True)
 class Task:
     """The arguments of `blast.blast`, which tells them.
 
+    field: reads the field of directions; None where there is none. Not all rules and textures follow one.
     told: where telling lines keep hatching away, (rows, columns) cells of the sheet, or None.
     """
 
@@ -45,7 +62,7 @@ class Task:
     pen_pt: float | None
     device_dpi: float | None
     outlines: Strokes | None
-    directions: Directions | None
+    field: Callable[[], Field | None]
     told: npt.NDArray[np.bool_] | None
     swell: float
     natural_pt: float | None
@@ -97,7 +114,7 @@ class Begun:
         whole = dark is not None and dark.high >= 1.0 and task.solid is None
         black, broad = (solids.BLACK, solids.LINED) if whole else (task.solid or solids.DARKEST, 1.0)
         told = task.tone, *size, sheet.ink, black, light, dark is not None and dark.high >= ALMOST, broad
-        value = recalled("black", told, lambda: solids.found(*told))
+        value = recalled("black", told, lambda: solids.found(*told, threads=sheet.threads))
         gaps = None
         if value is not None and whole:
             assert dark is not None
@@ -127,19 +144,12 @@ class Begun:
         found: npt.NDArray[np.bool_] = (meets > 0) & (2 * paper > beyond)
         return found
 
-    @cached_property
-    def field(self) -> tuple[Cells, Cells] | None:
-        """Cosine and sine of twice the angle of the task's field in each cell, (rows, columns); None without one."""
-        task, sheet = self.task, self.sheet
-        if task.directions is None:
-            return None
-        from penink_cli.directions.reading import at_size  # the reconstruction is not needed otherwise
+    @property
+    def field(self) -> Field | None:
+        """The task's field; None without one."""
+        return self.task.field()
 
-        told = task.directions, task.edges, sheet.rows, sheet.columns
-        field = recalled("field", told, lambda: at_size(*told, sheet.threads, confident=False))
-        return np.asarray(field.cos2, np.float32), np.asarray(field.sin2, np.float32)
-
-    def one_angle(self) -> tuple[Cells, Cells]:
+    def one_angle(self) -> Field:
         """The same for a field of which nothing is known: one angle everywhere, as of plain hatching."""
         c, s = direction(2 * ANGLE)
         whole = np.ones((self.sheet.rows, self.sheet.columns), np.float32)

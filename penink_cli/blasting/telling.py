@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from penink_cli.blasting.sheet import CELL_PT, coverage, resample
+from penink_cli.blasting.sheet import CELL_PT, cells, coverage, resample
 from penink_cli.composition.filters import Picture, blurred
 from penink_cli.ground import pens
 from penink_cli.ground.model import Floats, Ints, LineChoice, Lines, Strokes
@@ -59,7 +59,7 @@ def told(
     without them no dark line is taken to be drawn. Returns (h, w), or the sheet's cells where those are finer, and
     (rows, columns) of cells.
     """
-    rows, columns = max(1, round(height_pt / CELL_PT)), max(1, round(width_pt / CELL_PT))
+    rows, columns = cells(width_pt, height_pt)
     fine = tone.shape[0] >= rows and tone.shape[1] >= columns
     tone = tone if fine else resample(tone, rows, columns)
     around = blurred(resample(tone, rows, columns).astype(np.float32), AROUND_PT / CELL_PT, threads)

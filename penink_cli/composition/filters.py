@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -88,8 +89,8 @@ def histogram(values: Picture, weights: Picture | None, steps: int) -> npt.NDArr
     return counts
 
 
-def by_rows(work: Callable[..., Picture], *pictures: Picture, threads: int = 1) -> Picture:
-    """What `work` makes of pictures (h, w) point by point, made of a few rows at a time.
+def by_rows(work: Callable[..., Picture], *pictures: npt.NDArray[Any], threads: int = 1) -> Picture:
+    """What `work` makes of pictures or masks (h, w) point by point, made of a few rows at a time.
 
     What comes in between stays near the processor so: that takes half as long.
     """

@@ -30,10 +30,16 @@ def labelled(mask: Mask) -> tuple[npt.NDArray[np.int32], npt.NDArray[np.int32]]:
     >>> part.max(), box.tolist()
     (np.int32(1), [[0, 3, 2, 5]])
     """
-    part = np.empty(mask.shape, np.int32)
-    box = np.empty((_masks.label(_octets(mask), True, part), 4), np.int32)
+    part, count = parts(mask)
+    box = np.empty((count, 4), np.int32)
     _masks.boxes(part, box)
     return part, box
+
+
+def parts(mask: Mask) -> tuple[npt.NDArray[np.int32], int]:
+    """The same numbers (h, w), and how many parts there are."""
+    part = np.empty(mask.shape, np.int32)
+    return part, _masks.label(_octets(mask), True, part)
 
 
 def sizes(part: npt.NDArray[np.int32], count: int, mask: Mask) -> Ints:

@@ -148,6 +148,61 @@ def in_order(tasks: Iterator[Callable[[], T]], threads: int, ahead: int | None =
         crew.dismiss()
 
 
+def at_once(*tasks: Callable[[], T], threads: int) -> list[T]:
+    """The results of some tasks that have no part in each other, in their order."""
+    return list(in_order(iter(tasks), min(threads, len(tasks)), ahead=len(tasks)))
+
+
+@contextmanager
+def meanwhile(work: Callable[[], T], threads: int) -> Iterator[Callable[[], T]]:
+    """Let another thread do work while the block runs; what the block gets waits for the result, or raises.
+
+    Where no other thread has begun it when it is asked for, it is done then and there.
+    """
+    crew = _Crew(min(threads, 2) - 1)
+    lock = threading.Condition()
+    results: list[T] = []
+    failed: list[BaseException] = []
+    begun = False
+
+    def labour() -> None:
+        nonlocal begun
+        with lock:
+            if begun:
+                return
+            begun = True
+        try:
+            results.append(work())
+        except BaseException as error:
+            failed.append(error)
+        with lock:
+            lock.notify_all()
+
+    def done() -> bool:
+        return bool(results or failed)
+
+    def result() -> T:
+        labour()
+        with lock:
+            while not done():
+                with _at_rest():
+                    lock.wait()
+        if failed:
+            raise failed[0]
+        return results[0]
+
+    crew.begin(labour)
+    try:
+        yield result
+    finally:
+        with lock:
+            while begun and not done():
+                with _at_rest():
+                    lock.wait()
+            begun = True
+        crew.dismiss()
+
+
 class _Crew:
     """Threads that help with some work: as many as are wanted, and no more than are not at work elsewhere.
 

@@ -101,7 +101,7 @@ def test_the_border_of_black_is_smooth(pen, gain):
 
 def test_black_with_holes_necks_and_the_frame_is_filled_and_nothing_else():
     """Bars narrower than a pen, and than two and a half, join two blacks; one has a hole; both touch the frame."""
-    tone = np.zeros((288, 288))
+    tone = np.zeros((288, 288), np.float32)
     tone[0:90, 0:90] = tone[0:90, 140:240] = 1.0
     tone[40:41, 90:140] = tone[50:53, 90:140] = 1.0
     tone[30:60, 170:200] = 0.0

@@ -116,7 +116,7 @@ def test_a_gap_is_as_wide_as_it_says_and_closed(gain) -> None:
     half = 0.25 * np.minimum(np.minimum(t, 1 - t) * 8, 1)
     gaps = Gaps(curves.Polylines(points, np.array([0, len(points)])), half)
     chains, widths = [], []
-    tone = np.zeros((160, 160))
+    tone = np.zeros((160, 160), np.float32)
     tone[20:140, 20:140] = 1.0
     bordered.fill(tone, np.array([0.5, 0.5]), 0.35, gain, chains, widths, False, gaps)
     ink = coverage(Strokes.of(80, 80, chains, widths), 80 * 24, 80 * 24, gain)[24 * 12 : 24 * 68, 24 * 12 : 24 * 68]

@@ -3,6 +3,7 @@
 
 from libc.math cimport sqrt
 from libc.stdlib cimport free
+from libc.string cimport memchr, memset
 from penink_cli.ground._compiled.memory cimport room
 
 
@@ -24,20 +25,18 @@ def label(const unsigned char[:, ::1] mask, bint corners, int[:, ::1] part) -> i
     cdef Py_ssize_t h = mask.shape[0], w = mask.shape[1], i, j, k, begin, last
     cdef int count = 0, number, above, seen
     cdef int* under = NULL
+    cdef const unsigned char* row
     try:
         under = <int*>room(h * ((w + 1) // 2) + 1, sizeof(int))
         with nogil:
             under[0] = 0
             for i in range(h):
-                j = 0
+                row = &mask[i, 0]
+                memset(&part[i, 0], 0, w * sizeof(int))
+                j = from_here(row, 1, 0, w)
                 while j < w:
-                    if not mask[i, j]:
-                        part[i, j] = 0
-                        j += 1
-                        continue
                     begin = j
-                    while j < w and mask[i, j]:
-                        j += 1
+                    j = from_here(row, 0, j, w)
                     number = seen = 0
                     if i > 0:
                         last = min(w, j + corners)
@@ -51,6 +50,7 @@ def label(const unsigned char[:, ::1] mask, bint corners, int[:, ::1] part) -> i
                         under[count] = number = count
                     for k in range(begin, j):
                         part[i, k] = number
+                    j = from_here(row, 1, j, w)
             number = 0
             for k in range(1, count + 1):  # a number lies under lesser ones only, which have their final numbers
                 if under[k] == k:
@@ -58,12 +58,25 @@ def label(const unsigned char[:, ::1] mask, bint corners, int[:, ::1] part) -> i
                     under[k] = number
                 else:
                     under[k] = under[under[k]]
-            for i in range(h):
-                for j in range(w):
-                    part[i, j] = under[part[i, j]]
+            for i in range(h if number < count else 0):
+                row = &mask[i, 0]
+                j = from_here(row, 1, 0, w)
+                while j < w:
+                    begin = j
+                    j = from_here(row, 0, j, w)
+                    above = under[part[i, begin]]
+                    for k in range(begin, j):
+                        part[i, k] = above
+                    j = from_here(row, 1, j, w)
         return number
     finally:
         free(under)
+
+
+cdef inline Py_ssize_t from_here(const unsigned char* row, int wanted, Py_ssize_t j, Py_ssize_t w) noexcept nogil:
+    """The first pixel from j on that is in the mask, or is not; w for none."""
+    cdef const void* found = memchr(row + j, wanted, w - j)
+    return <const unsigned char*>found - row if found is not NULL else w
 
 
 cdef inline int root(int* under, int number) noexcept nogil:
@@ -106,10 +119,17 @@ def boxes(const int[:, ::1] part, int[:, ::1] box) -> None:
 def sizes(const int[:, ::1] part, const unsigned char[:, ::1] mask, long long[::1] size) -> None:
     """Add to size[k] how many pixels of part k, (h, w), are in the mask, from number 0 on."""
     cdef Py_ssize_t i, j
+    cdef int here, count
     with nogil:
         for i in range(part.shape[0]):
+            here = count = 0  # a run of one part is added at once: each addition would wait for the one before
             for j in range(part.shape[1]):
-                size[part[i, j]] += mask[i, j]
+                if part[i, j] != here:
+                    size[here] += count
+                    here = part[i, j]
+                    count = 0
+                count += mask[i, j]
+            size[here] += count
 
 
 def distance(const unsigned char[:, ::1] mask, double[:, ::1] out) -> None:
