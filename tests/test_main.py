@@ -61,6 +61,8 @@ def test_version(penink):
     [
         (["enlrage"], "did you mean enlarge?"),
         (["reduce", "--fctor", "4"], "--factor"),
+        (["reduce", "--factor", "4", "--relative"], "--relative goes with --auto"),
+        (["reduce", "--auto", "--relative"], "--relative goes with --seen-at"),
         (["enlarge", "--scale", "nan"], "not a number above 0"),
         (["enlarge", "--scale", "1_0"], "'1_0' is not a number above 0"),
         (["enlarge", "--size", "4x0"], "not a size"),

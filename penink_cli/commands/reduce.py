@@ -37,7 +37,9 @@ from penink_cli.options.photographs import photo_limit, photo_options, read_phot
     type=LENGTH,
     help="Count what a drawing of this width can show: the difference blurred by a point on paper.",
 )
-@click.option("--relative", is_flag=True, help="Allow faint photos as much less error: it hides more of them.")
+@click.option(
+    "--relative", is_flag=True, help="With --seen-at: allow faint photos as much less error, it hides more of them."
+)
 @click.option(
     "--fit",
     type=click.Choice(["none", "lsq"]),
@@ -93,6 +95,8 @@ def reduce(
         for name, told in (("max-error", max_error), ("seen-at", seen_at), ("relative", relative or None)):
             if told is not None:
                 raise click.UsageError(f"--{name} goes with --auto")
+    elif relative and seen_at is None:
+        raise click.UsageError("--relative goes with --seen-at: faint is what a drawing of that width shows little of")
     only_one_standard_input(file, edges_file, photo_file or "")
     edges = read_edges(edges_file, max_pixels)
     samples = read_grey(file, photo_limit(max_pixels))
@@ -116,7 +120,14 @@ def reduce(
     if size is None:
         limit = None if max_error is None else max_error / 255
         chosen = grid.choose_grid(
-            samples.grey, edges, limit, seen_at=seen_at, relative=relative, photo=photo, fit=fit, threads=threads,
+            samples.grey,
+            edges,
+            limit,
+            seen_at=seen_at,
+            relative=relative,
+            photo=photo,
+            fit=fit,
+            threads=threads,
             report=say,
         )
         reduced = chosen.samples

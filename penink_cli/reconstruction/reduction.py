@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cached_property
+
 import numpy as np
 import numpy.typing as npt
 
@@ -56,37 +58,58 @@ def reduce(
     Raises ParameterError for another fit.
 
     """
-    if fit not in FITS:
-        raise ParameterError(f"fit {fit!r} is not one of {', '.join(FITS)}")
-    values = np.ascontiguousarray(samples, np.float32)
-    if photo is None:
-        seen, blur, fine = values, 0.0, POINT  # clean samples are sharp
-    else:
-        seen, fine = np.ascontiguousarray(photo, np.float32), AREA
-        blur = camera_blur(seen, edges) if blur is None else blur
-    start = fit_plain(seen, width, height, blur, fine)
-    if len(edges.edges):
-        _take_near_edges(values, edges, start, threads)
-        if fit == "lsq":
-            shrink = min(seen.shape[1] / width, seen.shape[0] / height) / _ENOUGH
-            if shrink > 1:
-                seen, blur, fine = shrunk(seen, shrink), blur / shrink, AREA
-            start = fit_samples(seen, edges, start, blur, fine, threads=threads)
-    return np.clip(start, 0, 1).astype(np.float32)
+    return Reduction(samples, edges, fit, threads).to(width, height, photo, blur)
 
 
-def _take_near_edges(values: npt.NDArray[np.float32], edges: EdgeList, out: Floats, threads: int | None) -> None:
-    """Replace the samples that an edge is near by planes fitted to what each can reach."""
-    height, width = out.shape
-    old_height, old_width = values.shape
-    near = walls.distances(edges, width, height, _NEAR)
-    lines = np.column_stack(walls.segments(edges, old_width, old_height))
-    ground = walkable(edges, old_width, old_height)
-    near_by = _clean.Edges(edge_index.grid(lines, _CELL, old_width, old_height))
-    factor = min(_clean.MAX_REACH - 1, max(old_width / width, old_height / height))
+class Reduction:
+    """Samples to be reduced, to one grid or to several: which old samples reach one another is found once for all."""
 
-    def rows(first: int, last: int) -> None:
-        spread, stiffness = _SPREAD * factor, (_STIFFNESS * factor) ** 2
-        _clean.resample(values, ground, near_by, first, last, round(factor), spread, stiffness, near, out)
+    def __init__(
+        self, samples: npt.NDArray[np.floating], edges: EdgeList, fit: str = "none", threads: int | None = None
+    ) -> None:
+        """samples, edges, fit, threads: as of `reduce`; raises as that does."""
+        if fit not in FITS:
+            raise ParameterError(f"fit {fit!r} is not one of {', '.join(FITS)}")
+        self._values = np.ascontiguousarray(samples, np.float32)
+        self._edges, self._fit, self._threads = edges, fit, threads
 
-    threading.share(threading.ranges(rows, height, _BAND_ROWS), threading.count(threads))
+    def to(
+        self, width: int, height: int, photo: npt.NDArray[np.floating] | None = None, blur: float | None = None
+    ) -> npt.NDArray[np.float32]:
+        """The samples (height, width) of `reduce`; width, height, photo, blur: as there."""
+        if photo is None:
+            seen, blur, fine = self._values, 0.0, POINT  # clean samples are sharp
+        else:
+            seen, fine = np.ascontiguousarray(photo, np.float32), AREA
+            blur = camera_blur(seen, self._edges) if blur is None else blur
+        shrink = min(seen.shape[1] / width, seen.shape[0] / height) / _ENOUGH
+        if shrink > 1:
+            seen, blur, fine = shrunk(seen, shrink), blur / shrink, AREA
+        start = fit_plain(seen, width, height, blur, fine)
+        if len(self._edges.edges):
+            self._take_near_edges(start)
+            if self._fit == "lsq":
+                start = fit_samples(seen, self._edges, start, blur, fine, threads=self._threads)
+        return np.clip(start, 0, 1).astype(np.float32)
+
+    @cached_property
+    def _ground(self) -> tuple[_clean.Ground, _clean.Edges]:
+        """The steps between old samples that cross no edge, and which edges are near each."""
+        height, width = self._values.shape
+        lines = np.column_stack(walls.segments(self._edges, width, height))
+        index = edge_index.grid(lines, _CELL, width, height)
+        return walkable(self._edges, width, height), _clean.Edges(index)
+
+    def _take_near_edges(self, out: Floats) -> None:
+        """Replace the samples that an edge is near by planes fitted to what each can reach."""
+        height, width = out.shape
+        old_height, old_width = self._values.shape
+        near = walls.distances(self._edges, width, height, _NEAR)
+        ground, near_by = self._ground
+        factor = min(_clean.MAX_REACH - 1, max(old_width / width, old_height / height))
+
+        def rows(first: int, last: int) -> None:
+            spread, stiffness = _SPREAD * factor, (_STIFFNESS * factor) ** 2
+            _clean.resample(self._values, ground, near_by, first, last, round(factor), spread, stiffness, near, out)
+
+        threading.share(threading.ranges(rows, height, _BAND_ROWS), threading.count(self._threads))

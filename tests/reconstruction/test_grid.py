@@ -6,8 +6,10 @@ from scipy import ndimage
 
 from penink_cli.ground.errors import ParameterError
 from penink_cli.ground.model import EdgeList
-from penink_cli.reconstruction import enlarge, grid, shrinking
+from penink_cli.reconstruction import enlarge, fit, grid, shrinking
 from penink_cli.reconstruction.grid import choose_grid
+from penink_cli.reconstruction.reduction import reduce
+from tests.reconstruction.scenes import disc, tones
 
 
 def picture(size=96):
@@ -43,10 +45,10 @@ def test_the_grid_of_a_large_photo_is_found_in_a_smaller_view_of_it(noise, monke
 
 def test_means_over_parts_that_are_no_whole_pixels():
     rng = np.random.default_rng(3)
-    values = rng.random((3, 10)).astype(np.float32)
-    found = shrinking._means(values, 4)
-    expected = np.repeat(values, 2, axis=1).reshape(3, 4, 5).mean(axis=2)  # two halves a pixel, five a part
-    assert np.allclose(found, expected, atol=1e-6)
+    values = rng.random((15, 10)).astype(np.float32)
+    found = shrinking.shrunk(values, 2.5)
+    halves = np.repeat(np.repeat(values, 2, axis=0), 2, axis=1)  # two a pixel, five a part
+    assert np.allclose(found, halves.reshape(6, 5, 4, 5).mean(axis=(1, 3)), atol=1e-6)
 
 
 def test_every_region_gets_a_sample():
@@ -65,7 +67,7 @@ def test_every_region_gets_a_sample():
 def test_a_speck_is_no_region_however_finely_it_is_resolved(frame, side, regions):
     square = np.array([[20, 20], [20 + side, 20], [20 + side, 20 + side], [20, 20 + side]], float)
     edges = EdgeList(frame, frame, square, np.array([[0, 1], [1, 2], [2, 3], [3, 0]]))
-    assert grid._Regions(edges, frame, frame).count == regions
+    assert len(grid._Regions(edges, frame, frame).known) == regions
 
 
 @pytest.mark.parametrize("seed", range(3))
@@ -135,6 +137,23 @@ def test_a_small_drawing_needs_fewer_samples_and_shows_no_more_than_is_allowed()
         shown = ndimage.gaussian_filter(large - woven, sigma, mode="nearest")
         assert np.sqrt(np.mean(shown**2)) == pytest.approx(chosen.error, abs=2e-4)
     assert sides[0] == sides[1] < sides[2] / 2
+
+
+def test_a_smaller_view_tells_of_a_grid_what_the_photo_does():
+    """Its pixels blur some of what a width blurs; were it blurred whole again, 2 and 10 % would be missing."""
+    tone, edges = disc()
+    sharp = tones(tone, 1440).reshape(360, 4, 360, 4).mean(axis=(1, 3))
+    texture = ndimage.gaussian_filter(np.random.default_rng(4).normal(size=(360, 360)), 4.0)
+    photo = (sharp + 0.03 * texture / texture.std()).astype(np.float32)
+    view = grid._View(photo, 0.0, fit.AREA, seen=6.0)
+    samples = reduce(photo, edges, 24, 24, photo=photo, fit="lsq", blur=0.0)
+
+    def told(by):
+        return grid.remaining_error(samples, edges, by.picture, by.blur, by.fine, seen=by.to_blur())
+
+    for pixels, off in ((14_400, 0.01), (3600, 0.025)):
+        assert told(view.smaller(pixels)) == pytest.approx(told(view), rel=off)
+        assert grid._detail(view.smaller(pixels)) == pytest.approx(grid._detail(view), rel=0.005)
 
 
 def test_a_faint_photo_is_allowed_less_error():

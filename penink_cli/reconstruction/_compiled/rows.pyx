@@ -16,7 +16,7 @@ cdef float T2 = 1e-4  # below this sum of B-spline weights plain convolution is 
 
 cdef float _smooth(float t) noexcept nogil:
     """S(t) = 3t² − 2t³, clamped."""
-    return 0.0 if t <= 0.0 else (1.0 if t >= 1.0 else t * t * (3.0 - 2.0 * t))
+    return <float>0.0 if t <= 0 else (<float>1.0 if t >= 1 else t * t * (<float>3.0 - 2 * t))
 
 
 cdef int _shade(Tile tile, Scratch scratch) except -1 nogil:
@@ -70,10 +70,10 @@ cdef void _change(
         least = min(least, by_cubic[c])
     if least >= T1:
         for c in range(8):
-            by_cubic[c] = 1.0 / by_cubic[c]
+            by_cubic[c] = <float>1.0 / by_cubic[c]
         for s in range(16):
             for c in range(8):
-                out[8 * s + c] = cubic[8 * s + c] * (alpha[8 * s + c] * by_cubic[c] - 1.0)
+                out[8 * s + c] = cubic[8 * s + c] * (alpha[8 * s + c] * by_cubic[c] - <float>1.0)
         return
     for s in range(16):
         y = <float>yb[s >> 2]
@@ -82,12 +82,12 @@ cdef void _change(
             by_spline[c] += alpha[8 * s + c] * spline[8 * s + c]
     for c in range(8):
         omega = _smooth(by_cubic[c] / T1)
-        fade = 1.0 - _smooth(by_spline[c] / T2)
-        y = omega * by_cubic[c] + (1.0 - omega) * by_spline[c]
-        y = (1.0 - fade) / y if y > 0.0 else 0.0
+        fade = <float>1.0 - _smooth(by_spline[c] / T2)
+        y = omega * by_cubic[c] + (<float>1.0 - omega) * by_spline[c]
+        y = (<float>1.0 - fade) / y if y > 0 else <float>0.0
         by_cubic[c] = omega * y
-        by_spline[c] = (1.0 - omega) * y
-        across[c] = fade - 1.0
+        by_spline[c] = (<float>1.0 - omega) * y
+        across[c] = fade - <float>1.0
     for s in range(16):
         for c in range(8):
             out[8 * s + c] = (
