@@ -14,7 +14,7 @@ from contextlib import contextmanager
 import click
 
 from penink_cli.chain.kept import Kept
-from penink_cli.ground import streams
+from penink_cli.ground import heap, streams
 from penink_cli.ground import threads as threading
 from penink_cli.ground.changes import noting
 from penink_cli.ground.errors import PeninkError
@@ -145,5 +145,6 @@ def bench() -> Iterator[dict[str, bytes]]:
     """A workbench, on which photographs are remembered too, and nothing is warned of twice."""
     from penink_cli.options.remembered import remembering_inputs
 
+    heap.share()
     with streams.workbench({}) as files, remembering_inputs(), warning_once():
         yield files

@@ -79,8 +79,8 @@ def detect_lines(
     from penink_cli.lines import detection
 
     only_one_standard_input(file, directions_file)
-    grey = read_photo(file, max_pixels).grey
-    rows, columns = grey.shape
+    photo = read_photo(file, max_pixels)
+    rows, columns = photo.values.shape
     field = read_directions(directions_file, columns, rows, max_pixels)
 
     def at_size(height: int, width: int) -> Directions:
@@ -90,7 +90,8 @@ def detect_lines(
         return at_size(field, None, height, width, threads)
 
     found = detection.detect_lines(
-        grey,
+        photo.values,
+        maxval=photo.maxval,
         black=black is not False,
         white=black is not True,
         min_length=min_length,
@@ -103,7 +104,8 @@ def detect_lines(
 
         usual = LineChoice()
         choice = replace(usual, density=density or usual.density, per_inch2=per_inch2 or usual.per_inch2)
-        room = telling.with_room(found, seen_at, seen_at * rows / columns, 1 - grey, choice, threads or processors())
+        height = seen_at * rows / columns
+        room = telling.with_room(found, seen_at, height, 1 - photo.grey, choice, threads or processors())
         found = found.chosen(room)
     spots = int((found.breadth > 0).sum())
     reporter(verbose)(f"{len(found)} lines, {int(found.white.sum())} of them light, {spots} spots")

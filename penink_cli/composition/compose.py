@@ -104,8 +104,7 @@ def compose(
         stored = _sized(plain, width, height, threads)
     result = stored
     if choice.strength > 0:
-        colours = _framed(photo, width, height, threads, report)
-        composed = _composed(colours, choice, pt, fade, threads, report)
+        composed = _composed(_framed(photo, width, height, threads, report), choice, pt, fade, threads, report)
         part = min(1.0, choice.strength / _WHOLE_FROM)
         result = composed if stored is None else stored + np.float32(part) * (composed - stored)
     assert result is not None
@@ -166,7 +165,10 @@ def _checked_fade(
 def _composed(
     colours: Picture, choice: Choice, pt: float, fade: Picture | None, threads: int, report: Callable[[str], None]
 ) -> Picture:
-    """The composition proper of (h, w) or (h, w, 3); pt: pixels a point."""
+    """The composition proper of (h, w) or (h, w, 3); pt: pixels a point.
+
+    A plane of a large drawing is eight megabytes: what is not needed any more is let go of at once.
+    """
     strength = max(choice.strength, _WHOLE_FROM)
     if colours.ndim == 3:
         mix = choice.mix or mixing.chosen_mix(colours, pt)
@@ -183,9 +185,11 @@ def _composed(
     key = exposure.inks(choice.target)
     key *= key
     broad, carved = raising.base(grey, key, pt, threads, colours if colours.ndim == 3 else None)
+    del colours
     detail = grey - broad
     weight = _weight(grey, noise, pt, threads)
     upto = exposure.histogram(broad, weight if fade is None else weight * fade)
+    del weight
     table, slope = exposure.curve(upto, choice.target, strength)
     exposed = looked_up(broad, table)
     # slopes belong to the middle of their steps
@@ -200,9 +204,11 @@ def _composed(
 
     lifted = by_rows(less_in_lights, carved, exposed, broad, threads=threads)
     carved = by_rows(without_shine, carved, broad, threads=threads)
+    del broad
     exposed = _blank(exposed, carved, _BLANK_FROM, _BLANK, _PAPER, threads=threads)
     carved *= np.float32(min(key, 1.0))
     result = raising.raised(detail, exposed, slopes, lifted, carved, choice.detail, noise, pt, threads)
+    del detail, exposed, slopes, lifted
     result = by_rows(
         lambda grey: np.clip((grey - np.float32(_INK)) * np.float32(1 / (_PAPER - _INK)), 0, 1), result, threads=threads
     )

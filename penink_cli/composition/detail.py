@@ -113,8 +113,10 @@ def raised(
 
     lights = by_rows(less_light, lights, lifted, carved, threads=threads)
     broad = blurred(middle, _BROAD_PT * pt, threads)
-    strong, grain, coarse = (variance(values, 6.0) for values in (middle, middle - broad, broad))
-    each = by_rows(gained, strong, slope, lifted, carved, grain, coarse, threads=threads)
+    grain, coarse = variance(middle - broad, 6.0), variance(broad, 6.0)
+    del broad
+    each = by_rows(gained, variance(middle, 6.0), slope, lifted, carved, grain, coarse, threads=threads)
+    del grain, coarse
     parts = guard(middle, 0.5 * noise), guard(fine, noise)
     return _with_room(lights, by_rows(drawn, each, *parts, threads=threads), pt, threads)
 

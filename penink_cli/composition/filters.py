@@ -25,11 +25,16 @@ _NEAR = 1 << 17
 _COARSE, _KEPT = 4.0, 2.5  # a wider Gaussian (pixels) is that of a smaller view, of about that many pixels, enlarged
 
 
-def shrunk(values: npt.NDArray[np.generic], width: int, height: int, scale: float = 1.0, threads: int = 1) -> Picture:
-    """Means of values (h, w) or (h, w, channels) over the pixels of a picture of width × height, times scale."""
+def shrunk(
+    values: npt.NDArray[np.generic], width: int, height: int, scale: float = 1.0, threads: int = 1, whole: int = 1
+) -> Picture:
+    """Means of values (h, w) or (h, w, channels) over the pixels of a picture of width × height, times scale.
+
+    whole: what whole numbers are divided by first, as if they had been made a picture: that takes four times the room.
+    """
     planes = np.ascontiguousarray(values if values.ndim == 3 else values[..., None])
     out = np.empty((height, width, planes.shape[2]), np.float32)
-    _each(height, lambda top, bottom: filters.shrink(planes, scale, out, top, bottom), threads)
+    _each(height, lambda top, bottom: filters.shrink(planes, scale, whole, out, top, bottom), threads)
     return out if values.ndim == 3 else out[..., 0]
 
 

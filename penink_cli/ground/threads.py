@@ -10,7 +10,7 @@ import os
 import threading
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from contextvars import Context, copy_context
 from functools import partial
 from typing import TypeVar
@@ -18,7 +18,6 @@ from typing import TypeVar
 T = TypeVar("T")
 
 _most: list[int | None] = [None]  # how many threads `count` says where it is given no number
-_ARENA_MAX = -8  # of malloc.h
 _working = 1  # threads that are at work now, the one that everything began in among them
 _threads = _busy = 0  # threads that have been begun, and those of them that are at work
 _change = threading.Condition()  # of all these
@@ -222,8 +221,6 @@ class _Crew:
             _posts.extend((self, copy_context(), labour) for _ in range(self.called))
             _change.notify(self.called)
             while len(_posts) > _threads - _busy:
-                if not _threads:
-                    _share_heap()
                 try:
                     threading.Thread(target=_serve, daemon=True).start()
                 except RuntimeError:  # too many processes, or no memory for a stack
@@ -267,17 +264,6 @@ def _labour() -> None:
     with _change:
         crew.leave()
         _busy -= 1
-
-
-def _share_heap() -> None:
-    """Let all threads allocate from one heap, where the C library is one (glibc) that would give each its own.
-
-    What a thread has freed is kept for it alone: a drawing takes a tenth more memory so, and is no faster.
-    """
-    import ctypes  # numpy has loaded it
-
-    with suppress(AttributeError, OSError, TypeError):
-        ctypes.CDLL(None).mallopt(_ARENA_MAX, 1)
 
 
 @contextmanager

@@ -74,8 +74,9 @@ STEP = 6.0
 
 
 def detect_lines(
-    grey: npt.NDArray[np.floating],
+    grey: npt.NDArray[np.generic],
     *,
+    maxval: int = 1,
     black: bool = True,
     white: bool = True,
     min_length: float | None = None,
@@ -84,12 +85,13 @@ def detect_lines(
 ) -> Lines:
     """Telling lines of a photo, those of the highest rank first.
 
-    grey: (h, w) 0 black … 1 white. black, white: whether dark and light lines are looked for. min_length: pixels of the
-    photo. directions: called with rows and columns, gives a field of that size that stands in for the photo's own.
+    grey: (h, w) 0 black … maxval white, as a photo stores it, or 0 … 1. black, white: whether dark and light lines are
+    looked for. min_length: pixels of the photo. directions: called with rows and columns, gives a field of that size
+    that stands in for the photo's own.
     """
     rows, columns = grey.shape
     width, height = working_size(columns, rows)
-    picture = resized(np.ascontiguousarray(grey, np.float32), width, height, threads)
+    picture = resized(grey, maxval, width, height, threads)
     shortest = SHORTEST if min_length is None else min_length * math.sqrt(width * height / (columns * rows))
     even = normalised(picture, threads)
     tone = 1 - blurred(picture, GROUND, threads)
@@ -143,12 +145,14 @@ def working_size(width: int, height: int) -> tuple[int, int]:
     return min(max(12, round(width * scale)), LONGEST), min(max(12, round(height * scale)), LONGEST)
 
 
-def resized(grey: Picture, width: int, height: int, threads: int) -> Picture:
-    """The picture (h, w) at width × height pixels."""
+def resized(grey: npt.NDArray[np.generic], maxval: int, width: int, height: int, threads: int) -> Picture:
+    """The picture (h, w), 0 … maxval, as 0 … 1 at width × height pixels."""
     h, w = grey.shape
+    if grey.dtype.kind != "u":
+        grey, maxval = np.ascontiguousarray(grey, np.float32), 1
     if width <= w and height <= h:
-        return shrunk(grey, width, height, threads=threads)
-    return enlarged(grey, width, height, threads)
+        return shrunk(grey, width, height, threads=threads, whole=maxval)
+    return enlarged(np.divide(grey, maxval, dtype=np.float32), width, height, threads)
 
 
 def halved(values: Picture, threads: int) -> Picture:

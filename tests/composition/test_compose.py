@@ -211,6 +211,34 @@ def test_blur_is_gaussian(sigma):
     assert np.abs(filters.blurred(values, sigma) - expected).max() < 0.08 * values.std() + 1e-6
 
 
+@pytest.mark.parametrize("depth", [np.uint8, np.uint16, np.float32])
+@pytest.mark.parametrize("channels", [1, 3])
+def test_vectors_of_any_width_filter_and_shrink_the_same(depth, channels):
+    """Sums of one place's parts in their order, told in a plain loop; and of whole numbers as if they were divided."""
+    rng = np.random.default_rng(4)
+    values = (rng.random((23, 75, channels)) * 200).astype(depth)
+    whole = 200 if depth != np.float32 else 1
+    picture = np.divide(values, whole, dtype=np.float32)
+    weights = filters.gaussian(1.7)
+    found = []
+    try:
+        for width in sorted({filters.filters.take_lanes(bytes_) for bytes_ in (16, 32)}):
+            filters.filters.take_lanes(width)
+            plain = filters.shrunk(picture, 31, 7)
+            assert (filters.shrunk(values, 31, 7, whole=whole) == plain).all()
+            across = np.empty(picture.shape[:2], np.float32)
+            filters.filters.across(picture[..., 0].copy(), weights, across, 0, 23)
+            found.append((plain.tobytes(), filters.shrunk(values, 31, 7).tobytes(), across.tobytes()))
+    finally:
+        filters.filters.take_lanes(32)
+    assert len(set(found)) == 1
+    wide = np.pad(picture[..., 0], ((0, 0), (9, 9)), mode="symmetric")
+    slow = weights[0] * wide[:, 9:-9]
+    for k in range(1, len(weights)):
+        slow += weights[k] * (wide[:, 9 - k : -9 - k] + wide[:, 9 + k : wide.shape[1] - 9 + k])
+    assert (slow == across).all()
+
+
 def test_shrinking_takes_means_of_areas():
     values = RNG.integers(0, 65536, (60, 90, 3), np.uint16)
     means = values.reshape(20, 3, 30, 3, 3).mean(axis=(1, 3))

@@ -6,26 +6,69 @@ Every number is a sum in one fixed order, whatever rows a call is given, so thre
 
 from libc.stdlib cimport free, malloc
 
+cdef extern from "filters.h" nogil:
+    void symmetric(const float** before, const float** after, float* weight, Py_ssize_t n, float* out, Py_ssize_t width)
+    void bytes_summed(
+        const unsigned char** row, float* part, Py_ssize_t n, float whole, float* out, Py_ssize_t width
+    )
+    void bytes_divided(
+        const unsigned char** row, float* part, Py_ssize_t n, float whole, float* out, Py_ssize_t width
+    )
+    void shorts_summed(
+        const unsigned short** row, float* part, Py_ssize_t n, float whole, float* out, Py_ssize_t width
+    )
+    void shorts_divided(
+        const unsigned short** row, float* part, Py_ssize_t n, float whole, float* out, Py_ssize_t width
+    )
+    void floats_summed(
+        const float** row, float* part, Py_ssize_t n, float whole, float* out, Py_ssize_t width
+    )
+    int best_lanes()
+    int lanes
+
+ctypedef const unsigned char const_uchar
+ctypedef const unsigned short const_ushort
+ctypedef const float const_float
+
 ctypedef fused stored:
-    const unsigned char
-    const unsigned short
-    const float
+    const_uchar
+    const_ushort
+    const_float
 
 
-def shrink(stored[:, :, ::1] values, float scale, float[:, :, ::1] out, Py_ssize_t top, Py_ssize_t bottom):
-    """Rows top … bottom of out (h, w, channels): the means of values (H, W, channels) over each pixel, times scale."""
+def take_lanes(int wanted) -> int:
+    """Take the make for vectors of so many bytes, 16 or 32, or what this processor has: the same numbers by both."""
+    global lanes
+    lanes = min(wanted, best_lanes())
+    return lanes
+
+
+take_lanes(32)
+
+
+def shrink(
+    stored[:, :, ::1] values, float scale, float whole, float[:, :, ::1] out, Py_ssize_t top, Py_ssize_t bottom
+):
+    """Rows top … bottom of out (h, w, channels): the means of values (H, W, channels) over each pixel, times scale.
+
+    whole: what values that are no fractions are divided by first.
+    """
     cdef Py_ssize_t rows = values.shape[0], columns = values.shape[1], channels = values.shape[2]
     cdef Py_ssize_t h = out.shape[0], w = out.shape[1], long_row = columns * channels
-    cdef Py_ssize_t y, x, r, c, k, q, first, last
+    cdef Py_ssize_t y, x, r, c, k, n, q, first, last
     cdef double down = <double>rows / h, across = <double>columns / w, low, high
     cdef float part, total, area = <float>(scale / (down * across))
-    cdef float *sums = <float *>malloc(long_row * sizeof(float))
+    cdef Py_ssize_t most = <Py_ssize_t>down + 2  # rows that a pixel covers
+    cdef float *sums = <float *>malloc((long_row + most) * sizeof(float))
+    cdef float *row_parts = sums + long_row
+    cdef stored **covered = <stored **>malloc(most * sizeof(void *))
     # of each pixel of a row: the first of its columns, and where their parts begin, which are the same in all rows
     cdef Py_ssize_t *begin = <Py_ssize_t *>malloc((2 * w + 1) * sizeof(Py_ssize_t))
     cdef float *parts = <float *>malloc((columns + 2 * w) * sizeof(float))
     cdef Py_ssize_t *column = begin + w + 1
-    if sums == NULL or begin == NULL or parts == NULL:
+    if sums == NULL or covered == NULL or begin == NULL or parts == NULL:
         free(sums)
+        free(covered)
         free(begin)
         free(parts)
         raise MemoryError
@@ -44,13 +87,24 @@ def shrink(stored[:, :, ::1] values, float scale, float[:, :, ::1] out, Py_ssize
         for y in range(top, bottom):
             low, high = y * down, (y + 1) * down
             first, last = <Py_ssize_t>low, min(<Py_ssize_t>high, rows - 1)
-            for k in range(long_row):
-                sums[k] = 0
+            n = 0
             for r in range(first, last + 1):
                 part = <float>(min(high, r + 1.0) - max(low, <double>r))
                 if part > 0:
-                    for k in range(long_row):
-                        sums[k] += part * <float>(&values[r, 0, 0])[k]
+                    row_parts[n], covered[n] = part, &values[r, 0, 0]
+                    n += 1
+            if stored is const_uchar:
+                if whole == 1:
+                    bytes_summed(covered, row_parts, n, whole, sums, long_row)
+                else:
+                    bytes_divided(covered, row_parts, n, whole, sums, long_row)
+            elif stored is const_ushort:
+                if whole == 1:
+                    shorts_summed(covered, row_parts, n, whole, sums, long_row)
+                else:
+                    shorts_divided(covered, row_parts, n, whole, sums, long_row)
+            else:
+                floats_summed(covered, row_parts, n, whole, sums, long_row)
             for x in range(w):
                 for c in range(channels):
                     total = 0
@@ -60,6 +114,7 @@ def shrink(stored[:, :, ::1] values, float scale, float[:, :, ::1] out, Py_ssize
                         k += channels
                     out[y, x, c] = total * area
     free(sums)
+    free(covered)
     free(begin)
     free(parts)
 
@@ -73,52 +128,44 @@ cdef inline Py_ssize_t within(Py_ssize_t i, Py_ssize_t n) noexcept nogil:
     return period - 1 - i if i >= n else i
 
 
-def across(const float[:, ::1] values, const float[::1] weights, float[:, ::1] out, Py_ssize_t top, Py_ssize_t bottom):
+def across(const float[:, ::1] values, float[::1] weights, float[:, ::1] out, Py_ssize_t top, Py_ssize_t bottom):
     """Rows top … bottom of out (h, w): values filtered along rows by weights, the middle one first, mirrored."""
     cdef Py_ssize_t w = values.shape[1], n = weights.shape[0], y, x, k
-    cdef float weight
     cdef float *wide = <float *>malloc((w + 2 * n) * sizeof(float))
     cdef float *middle = wide + n
-    cdef float *row
-    if wide == NULL:
+    cdef const float **before = <const float **>malloc(2 * n * sizeof(void *))
+    cdef const float **after = before + n
+    if wide == NULL or before == NULL:
+        free(wide)
+        free(before)
         raise MemoryError
     with nogil:
+        for k in range(n):
+            before[k], after[k] = middle - k, middle + k
         for y in range(top, bottom):
             for x in range(w):
                 middle[x] = values[y, x]
             for k in range(n):
                 middle[-1 - k] = values[y, within(-1 - k, w)]
                 middle[w + k] = values[y, within(w + k, w)]
-            row = &out[y, 0]
-            weight = weights[0]
-            for x in range(w):
-                row[x] = weight * middle[x]
-            for k in range(1, n):
-                weight = weights[k]
-                for x in range(w):
-                    row[x] += weight * (middle[x - k] + middle[x + k])
+            symmetric(before, after, &weights[0], n, &out[y, 0], w)
     free(wide)
+    free(before)
 
 
-def down(const float[:, ::1] values, const float[::1] weights, float[:, ::1] out, Py_ssize_t top, Py_ssize_t bottom):
+def down(const float[:, ::1] values, float[::1] weights, float[:, ::1] out, Py_ssize_t top, Py_ssize_t bottom):
     """Rows top … bottom of out (h, w): values filtered along columns by weights, the middle one first, mirrored."""
-    cdef Py_ssize_t h = values.shape[0], w = values.shape[1], n = weights.shape[0], y, x, k
-    cdef float weight
-    cdef const float *above
-    cdef const float *below
-    cdef float *row
+    cdef Py_ssize_t h = values.shape[0], w = values.shape[1], n = weights.shape[0], y, k
+    cdef const float **before = <const float **>malloc(2 * n * sizeof(void *))
+    cdef const float **after = before + n
+    if before == NULL:
+        raise MemoryError
     with nogil:
         for y in range(top, bottom):
-            row = &out[y, 0]
-            above = &values[y, 0]
-            weight = weights[0]
-            for x in range(w):
-                row[x] = weight * above[x]
-            for k in range(1, n):
-                weight = weights[k]
-                above, below = &values[within(y - k, h), 0], &values[within(y + k, h), 0]
-                for x in range(w):
-                    row[x] += weight * (above[x] + below[x])
+            for k in range(n):
+                before[k], after[k] = &values[within(y - k, h), 0], &values[within(y + k, h), 0]
+            symmetric(before, after, &weights[0], n, &out[y, 0], w)
+    free(before)
 
 
 def enlarge(const float[:, ::1] values, float[:, ::1] out, Py_ssize_t top, Py_ssize_t bottom):
