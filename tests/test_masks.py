@@ -10,7 +10,7 @@ from penink_cli.ground.masks import distance, filled, grown, labelled, near, ope
 
 
 @pytest.mark.parametrize("share", [0.0, 0.1, 0.4, 0.7, 0.97])
-@pytest.mark.parametrize("shape", [(1, 1), (1, 9), (40, 60)])
+@pytest.mark.parametrize("shape", [(1, 1), (1, 9), (40, 60), (170, 23)])
 def test_parts_and_distances_are_scipys(share, shape):
     mask = np.random.default_rng(round(100 * share)).random(shape) < share
     part, boxes = labelled(mask)
@@ -23,8 +23,8 @@ def test_parts_and_distances_are_scipys(share, shape):
     if not mask.all():
         away = ndimage.distance_transform_edt(mask)
         assert np.array_equal(distance(mask), away)
-        for reach in (0.0, 0.9, 1.0, 1.5, math.sqrt(5), 3.0, 18.5, 30.0):
-            assert np.array_equal(near(mask, reach), away <= reach)
+        for reach in (0.0, 0.9, 1.0, 1.5, math.sqrt(5), 3.0, 18.5, 30.0, 160.0):
+            assert np.array_equal(near(mask, reach, threads=2), away <= reach)
             assert np.array_equal(near(mask, reach, strictly=True), away < reach)
 
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from penink_cli.blasting import curves
 from penink_cli.blasting.sheet import SIGMA_PT, Cells, Sheet, look_up
-from penink_cli.composition.filters import blurred
+from penink_cli.composition.filters import Picture, blurred, by_rows
 from penink_cli.ground.model import Floats, Ints, Strokes
 
 #: σ of the Gaussian for the tone at a knot and for the tone around it, points; a tone added to both.
@@ -43,10 +43,15 @@ def swollen(sheet: Sheet, strokes: Strokes, tone: Floats, swell: float) -> Strok
     """
     if not len(strokes):
         return strokes
-    px = tone.shape[1] / sheet.width
-    fine, around = (blurred(tone.astype(np.float32), sigma * px, sheet.threads) for sigma in (FINE_PT, AROUND_PT))
-    ratio = (fine + np.float32(FLOOR)) / (around + np.float32(FLOOR))
-    factor = np.clip(1 + np.float32(swell) * (ratio - 1), np.float32(LEAST), np.float32(MOST))
+    px, single = tone.shape[1] / sheet.width, tone.astype(np.float32)
+    fine, around = (blurred(single, sigma * px, sheet.threads) for sigma in (FINE_PT, AROUND_PT))
+
+    def darker(fine: Picture, around: Picture) -> Picture:
+        ratio = (fine + np.float32(FLOOR)) / (around + np.float32(FLOOR))
+        return np.clip(1 + np.float32(swell) * (ratio - 1), np.float32(LEAST), np.float32(MOST))
+
+    factor = by_rows(darker, fine, around, threads=sheet.threads)
+    del single, fine, around
     split, owner = _split(strokes, factor, sheet)
     knots = split.points[np.repeat(split.first[:-1], np.diff(split.knots)) + 3 * curves.ramp(np.diff(split.knots))]
     own = strokes.widths[owner] * look_up(factor, knots, sheet.width, sheet.height)

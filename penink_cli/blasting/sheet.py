@@ -48,6 +48,8 @@ STEP = 0.25
 #: Candidates are tried in blocks of this size, those of every second block at the same time,
 #: so no stroke longer than this less the kernel may be tried in parallel.
 BLOCK_PT = 144.0
+#: Rows of cells that a thread paints at the least.
+LEAST_BAND = 64
 
 
 #: Runs that one polyline is drawn in at the most.
@@ -171,8 +173,13 @@ class Sheet:
         self.weight = self.low_pass(np.ones_like(self.tone))
         self.residual = self.low_pass(self.tone - self.ink)
 
-    def paint(self, lines: Polylines, widths: Floats) -> Ints:
-        """Ink polylines (points), whatever is due. Returns (n,) how many subpixels each newly inks."""
+    def paint(self, lines: Polylines, widths: Floats) -> None:
+        """Ink polylines (points), whatever is due."""
+        points = np.ascontiguousarray(lines.points * self.scale)
+        _painted(self.bits, self.columns, points, lines.first, widths * self.pitch, self.gain, self.threads)
+
+    def newly_inked(self, lines: Polylines, widths: Floats) -> Ints:
+        """Ink polylines (points) one after the other; (n,) how many subpixels each newly inks."""
         fresh = np.zeros(len(widths), np.int64)
         points = np.ascontiguousarray(lines.points * self.scale)
         _ink.paint(self.bits, self.columns, points, lines.first, widths * self.pitch, self.gain, fresh)
@@ -220,10 +227,8 @@ class Sheet:
         def run(order: Ints) -> None:
             _placing.place(against, tried, asked, order, runs, moved)
 
-        block = self._blocks(lines)
-        for batch in batches:
-            for group in coloured(batch, block[batch]):
-                self.each(run, group)
+        for group in coloured(batches, self._blocks(lines)):
+            self.each(run, group)
         who, which = np.nonzero(runs[:, :, 0] >= 0)
         found = np.column_stack([who, runs[who, which]])
         found[:, 1:] -= lines.first[who][:, None]
@@ -241,7 +246,7 @@ class Sheet:
         pressed = np.ascontiguousarray(widths * self.pitch)
         low, high = np.ascontiguousarray(lightest * self.pitch), np.ascontiguousarray(heaviest * self.pitch)
         drawn = _press.Drawn(points, lines.first, pressed, low, high)
-        groups = coloured(order, self._blocks(lines)[order])
+        groups = coloured([order], self._blocks(lines))
         for turn in range(rounds):
             if turn:
                 self.clear()
@@ -268,7 +273,7 @@ class Sheet:
         threading.share([partial(work, item) for item in items], self.threads)
 
 
-def coverage(strokes: Strokes, rows: int, columns: int, wider_pt: float = 0.0) -> Cells:
+def coverage(strokes: Strokes, rows: int, columns: int, wider_pt: float = 0.0, threads: int = 1) -> Cells:
     """Coverage (rows, columns), 0 … 1, of the strokes' sheet by them, each so much wider."""
     bits = np.zeros((rows, (columns + 7) // 8, 8), np.uint64)
     out = np.zeros((rows, columns), np.float32)
@@ -278,25 +283,45 @@ def coverage(strokes: Strokes, rows: int, columns: int, wider_pt: float = 0.0) -
         lines = sample(strokes.points, strokes.first, pieces_of(strokes.points, strokes.first, CELL_PT))
         widths = (strokes.widths + wider_pt) * (float(scale[0] + scale[1]) / 2)
         points = np.ascontiguousarray(lines.points * scale)
-        _ink.paint(bits, columns, points, lines.first, widths, 0.0, np.zeros(len(widths), np.int64))
+        _painted(bits, columns, points, lines.first, widths, 0.0, threads)
         _ink.cover(bits, out)
     return out
 
 
-def coloured(batch: Ints, block: Ints) -> list[list[Ints]]:
-    """A batch as four groups, one for each colour of a 2 × 2 board, of one array for each block of that colour."""
-    groups = []
-    colour = (block[:, 0] & 1) + 2 * (block[:, 1] & 1)
-    for c in range(4):
-        mine = colour == c
-        if not mine.any():
-            continue
-        members, where = batch[mine], block[mine]
-        key = where[:, 1] * (1 << 32) + where[:, 0]
-        order = np.argsort(key, kind="stable")
-        cuts = np.flatnonzero(np.diff(key[order])) + 1
-        groups.append([np.ascontiguousarray(part) for part in np.split(members[order], cuts)])
-    return groups
+def _painted(
+    bits: npt.NDArray[np.uint64], columns: int, points: Floats, first: Ints, widths: Floats, gain: float, threads: int
+) -> None:
+    """Ink polylines, each piece by the thread whose rows of cells it lies in; last those that lie in two bands."""
+    rows = len(bits)
+    height = -(-rows // max(1, min(threads, rows // LEAST_BAND)))
+
+    def band(which: int) -> None:
+        _ink.paint_band(bits, columns, points, first, widths, gain, which, height)
+
+    count = -(-rows // height)
+    threading.share([partial(band, k) for k in range(count)], threads)
+    if count > 1:
+        band(-1)
+
+
+def coloured(batches: Sequence[Ints], block: Ints) -> list[list[Ints]]:
+    """Batches in their order, each as groups of one colour of a 2 × 2 board: an array for each block of that colour.
+
+    batches: indices of polylines; block: (n, 2) column and row of each polyline's.
+    """
+    if not sum(map(len, batches)):
+        return []
+    members = np.concatenate(batches)
+    x, y = block[members].T
+    colour = np.repeat(4 * np.arange(len(batches)), [len(batch) for batch in batches]) + (x & 1) + 2 * (y & 1)
+    key = (colour << 48) + ((y - y.min()) << 24) + (x - x.min())
+    order = np.argsort(key, kind="stable")
+    key = key[order]
+    cuts = np.flatnonzero(np.diff(key)) + 1
+    groups: dict[int, list[Ints]] = {}
+    for part, group in zip(np.split(members[order], cuts), (key[np.append(0, cuts)] >> 48).tolist()):
+        groups.setdefault(group, []).append(part)
+    return list(groups.values())
 
 
 def look_up(values: npt.NDArray[np.floating], points: Floats, width: float, height: float) -> Floats:

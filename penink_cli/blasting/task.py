@@ -98,7 +98,7 @@ class Begun:
         self.told = task.told
         self.near: npt.NDArray[np.bool_] | None = None
         if len(self.small):  # nor are they thin things to be drawn along
-            self.near = coverage(self.small, self.sheet.rows, self.sheet.columns, 2.0) > NEAR_MARK
+            self.near = coverage(self.small, self.sheet.rows, self.sheet.columns, 2.0, self.sheet.threads) > NEAR_MARK
             self.told = self.near if self.told is None else self.told | self.near
         self.light = LightThings(task.tone, task.width_pt, task.height_pt)
         black = self._black()
@@ -127,7 +127,7 @@ class Begun:
         strokes = recalled("solids", rest, lambda: solids.filled(*rest))
         if gaps is not None and value is not None:
             part = resample((value > marks.LEVEL).astype(np.float64), sheet.rows, sheet.columns).astype(np.float32)
-            covered = coverage(strokes, sheet.rows, sheet.columns, gain)
+            covered = coverage(strokes, sheet.rows, sheet.columns, gain, sheet.threads)
             # hatching draws nothing there, but is the lighter beside what is too dark
             dark_by = np.minimum(sheet.spread(sheet.seen(sheet.tone * part - covered)), 0)
             sheet.tone = sheet.tone * (1 - part) + np.where(part > 0, covered + dark_by, 0)

@@ -64,12 +64,12 @@ def told(
     tone = tone if fine else resample(tone, rows, columns)
     around = blurred(resample(tone, rows, columns).astype(np.float32), AROUND_PT / CELL_PT, threads)
     light = line_strokes(lines, width_pt, height_pt, WHITE, white=True)
-    shown = _shown(around) * coverage(light, rows, columns)
+    shown = _shown(around) * coverage(light, rows, columns, threads=threads)
     left = tone * resample((1 - shown).astype(np.float64), *tone.shape)
     # what is dark between two light lines is no thin thing: their ground is
-    near = (coverage(light, rows, columns, 2 * TOLD_PT) > 0.5) & (around > DARK)
+    near = (coverage(light, rows, columns, 2 * TOLD_PT, threads) > 0.5) & (around > DARK)
     if ink is not None and len(ink):
-        near |= coverage(ink, rows, columns, 2 * TOLD_PT) > 0.5
+        near |= coverage(ink, rows, columns, 2 * TOLD_PT, threads) > 0.5
     return left, near
 
 

@@ -51,7 +51,7 @@ def thresholds(texture: Texture, gain_pt: float) -> Floats:
     k = curves.ramp(copies)
     shift = -(first[source] + np.column_stack([k % count[source, 0], k // count[source, 0]])) * (w, h)
     moved = curves.take(lines, source, shift)
-    fresh = np.bincount(source, sheet.paint(moved, strokes.widths[source]), len(strokes))
+    fresh = np.bincount(source, sheet.newly_inked(moved, strokes.widths[source]), len(strokes))
     total = np.cumsum(fresh)
     return (total - fresh) / float(sheet.rows * sheet.columns * 64)
 

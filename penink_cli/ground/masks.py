@@ -16,7 +16,7 @@ from penink_cli.ground.model import Floats, Ints
 
 Mask = npt.NDArray[np.bool_]
 
-_FEW = 60.0  # pixels: up to this reach comparing all steps is faster than finding each pixel's nearest
+_FEW = 150.0  # pixels: up to this reach comparing all steps is faster than finding each pixel's nearest
 _BAND = 64  # rows of a task: the numbers of these a processor's cache holds
 
 
@@ -86,12 +86,12 @@ def near(mask: Mask, reach: float, strictly: bool = False, threads: int = 1) -> 
     if most < 0:
         return np.zeros(mask.shape, np.bool_)
     around, octets = math.isqrt(most), _octets(mask)
+    reaches = np.array([math.isqrt(most - k * k) for k in range(around + 1)], np.uint8)
     out = np.empty(mask.shape, np.bool_)
 
     def band(top: int, bottom: int) -> None:
-        down = np.empty((bottom - top + 2 * around, mask.shape[1]), np.uint8)
-        best = np.empty((2, mask.shape[1] + 2 * around), np.int16)
-        _masks.within(octets, around, most, down, best, top, out[top:bottom].view(np.uint8))
+        down = np.empty((bottom - top + 2 * around, mask.shape[1] + 2 * around), np.uint8)
+        _masks.within(octets, reaches, down, top, out[top:bottom].view(np.uint8))
 
     threading.share(threading.ranges(band, len(mask), max(_BAND, 4 * around)), threads)
     return out

@@ -37,11 +37,11 @@ def test_painting_counts_what_the_oracle_counts(seed):
     if seed % 4 == 0:
         points[1, seed % 8 // 4] = points[0, seed % 8 // 4]  # along a row or a column
     width = rng.uniform(0.3, 4)
-    fresh = sheet.paint(Polylines(points, np.array([0, 2])), np.array([width]))
+    fresh = sheet.newly_inked(Polylines(points, np.array([0, 2])), np.array([width]))
     wanted = oracle(points, width, sheet)
     assert abs(int(fresh[0]) - int(wanted.sum())) <= 0.002 * wanted.sum() + 6
     assert round(float(sheet.ink.sum()) * 64) == fresh[0]
-    again = sheet.paint(Polylines(points, np.array([0, 2])), np.array([width]))
+    again = sheet.newly_inked(Polylines(points, np.array([0, 2])), np.array([width]))
     assert again[0] == 0
 
 
@@ -53,7 +53,7 @@ def test_a_device_widens_a_stroke_by_its_pixels():
         areas = []
         for start in rng.uniform(20, 40, (40, 2)):
             sheet.clear()
-            ink = sheet.paint(Polylines(np.array([start, start + 120 * along]), np.array([0, 2])), np.ones(1))
+            ink = sheet.newly_inked(Polylines(np.array([start, start + 120 * along]), np.array([0, 2])), np.ones(1))
             areas.append(ink[0] / sheet.pitch**2)
         width = 1 + 0.24 * np.abs(along).sum()
         assert abs(np.mean(areas) - 120 * width - np.pi / 4 * width**2) < 1.5

@@ -6,5 +6,5 @@ cdef int bar(
 ) noexcept nogil
 cdef long long stroke(
     unsigned long long* bits, Py_ssize_t rows, Py_ssize_t columns, double* points, Py_ssize_t n, double ox, double oy,
-    double width, double gain, double* fresh,
+    double width, double gain, double* fresh, Py_ssize_t band, Py_ssize_t height,
 ) noexcept nogil

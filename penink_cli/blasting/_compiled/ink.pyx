@@ -148,13 +148,25 @@ cdef double half_width(double width, double gain, double dx, double dy) noexcept
     return 0.5 * (width + EDGE_GAIN * gain * (fabs(dx) + fabs(dy)) / length)
 
 
+cdef bint lies_in(
+    double y0, double y1, double reach, Py_ssize_t rows, Py_ssize_t band, Py_ssize_t height
+) noexcept nogil:
+    """Whether what reaches so far above and below y0 … y1 lies in a band of so many rows; for band -1 in two."""
+    cdef Py_ssize_t low = cell((y0 if y0 < y1 else y1) - reach)
+    cdef Py_ssize_t high = cell((y1 if y0 < y1 else y0) + reach)
+    low = min(max(low, 0), rows - 1) // height
+    high = min(max(high, 0), rows - 1) // height
+    return low != high if band < 0 else low == band and high == band
+
+
 cdef long long stroke(
     unsigned long long* bits, Py_ssize_t rows, Py_ssize_t columns, double* points, Py_ssize_t n, double ox, double oy,
-    double width, double gain, double* fresh,
+    double width, double gain, double* fresh, Py_ssize_t band, Py_ssize_t height,
 ) noexcept nogil:
     """Ink a polyline of n pieces (none is a dot), n + 1 points x, y, moved by (ox, oy).
 
     fresh: out, how many subpixels each piece newly inks; may be NULL. Returns their sum.
+    band, height: of `paint_band`, 0 and all rows for all pieces.
     """
     cdef Py_ssize_t i
     cdef double dx, dy, turn
@@ -162,7 +174,11 @@ cdef long long stroke(
     cdef int new
     cdef long long total = 0
     cdef double ex = 0.0, ey = 0.0
+    # more than half of what is painted, and than is rounded
+    cdef double reach = 0.53 * (width + 1.5 * gain) + 1.0
     if n == 0:
+        if height < rows and not lies_in(points[1] + oy, points[1] + oy, reach, rows, band, height):
+            return 0
         new = bar(bits, rows, columns, points[0] + ox, points[1] + oy, points[0] + ox, points[1] + oy,
                   half_width(width, gain, 0.0, 0.0), True, False, True)
         if fresh != NULL:
@@ -178,6 +194,8 @@ cdef long long stroke(
         cap = i == 0 or turn > 0.001
         ex = dx
         ey = dy
+        if height < rows and not lies_in(points[2 * i + 1] + oy, points[2 * i + 3] + oy, reach, rows, band, height):
+            continue
         # an arc is longer than its chord by a 24th of that square
         new = bar(bits, rows, columns, points[2 * i] + ox, points[2 * i + 1] + oy,
                   points[2 * i + 2] + ox, points[2 * i + 3] + oy,
@@ -198,7 +216,20 @@ def paint(
         for i in range(fresh.shape[0]):
             p = first[i]
             fresh[i] = stroke(&bits[0, 0, 0], bits.shape[0], columns, &points[p, 0],
-                              first[i + 1] - 1 - p, 0.0, 0.0, widths[i], gain, NULL)
+                              first[i + 1] - 1 - p, 0.0, 0.0, widths[i], gain, NULL, 0, bits.shape[0])
+
+
+def paint_band(
+    unsigned long long[:, :, ::1] bits, Py_ssize_t columns, double[:, ::1] points, long long[::1] first,
+    double[::1] widths, double gain, Py_ssize_t band, Py_ssize_t height,
+):
+    """Ink those pieces of polylines that lie in one band of so many rows of cells, or for band -1 in two of them."""
+    cdef Py_ssize_t i, p
+    with nogil:
+        for i in range(widths.shape[0]):
+            p = first[i]
+            stroke(&bits[0, 0, 0], bits.shape[0], columns, &points[p, 0],
+                   first[i + 1] - 1 - p, 0.0, 0.0, widths[i], gain, NULL, band, height)
 
 
 def cover(unsigned long long[:, :, ::1] bits, float[:, ::1] out):

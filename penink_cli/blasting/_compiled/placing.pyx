@@ -123,7 +123,7 @@ cdef class Trial:
         cdef double[:, ::1] points = self.lines.points
         stroke(
             &target.bits[0, 0, 0], target.rows, target.columns, &points[p0, 0], n, self.ox, self.oy,
-            self.lines.widths[self.i], target.gain, &self.fresh[0],
+            self.lines.widths[self.i], target.gain, &self.fresh[0], 0, target.rows,
         )
         for i in range(n if n > 0 else 1):
             ink += <float>self.fresh[i]

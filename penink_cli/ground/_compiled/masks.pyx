@@ -23,7 +23,7 @@ def label(const unsigned char[:, ::1] mask, bint corners, int[:, ::1] part) -> i
         . 3 3 3 .
     """
     cdef Py_ssize_t h = mask.shape[0], w = mask.shape[1], i, j, k, begin, last
-    cdef int count = 0, number, above, seen
+    cdef int count = 0, number, above
     cdef int* under = NULL
     cdef const unsigned char* row
     try:
@@ -37,14 +37,14 @@ def label(const unsigned char[:, ::1] mask, bint corners, int[:, ::1] part) -> i
                 while j < w:
                     begin = j
                     j = from_here(row, 0, j, w)
-                    number = seen = 0
+                    number = 0
                     if i > 0:
                         last = min(w, j + corners)
-                        for k in range(max(0, begin - corners), last):
+                        k = from_here(row - w, 1, max(0, begin - corners), last)
+                        while k < last:
                             above = part[i - 1, k]
-                            if above and above != seen:
-                                seen = above
-                                number = joined(under, number, above) if number else root(under, above)
+                            number = joined(under, number, above) if number else root(under, above)
+                            k = from_here(row - w, 1, from_here(row - w, 0, k, last), last)
                     if not number:
                         count += 1
                         under[count] = number = count
@@ -158,47 +158,42 @@ def distance(const unsigned char[:, ::1] mask, double[:, ::1] out) -> None:
 
 
 def within(
-    const unsigned char[:, ::1] mask, int reach, int most, unsigned char[:, ::1] down, short[:, ::1] best,
+    const unsigned char[:, ::1] mask, const unsigned char[::1] reaches, unsigned char[:, ::1] down,
     Py_ssize_t top, unsigned char[:, ::1] out,
 ) -> None:
-    """Which pixels (rows, w) of the rows from `top` on have a pixel outside the mask (h, w) near.
+    """Of the rows from `top` on, which pixels (rows, w) one outside the mask (h, w) is near to.
 
-    most: the square of the distance, pixels, that is near at the most. reach: its root rounded down, at most 100, so
-    that distances fit into 8 bits and their squares into 16: a vector holds the more of them. down: (rows + 2 reach,
-    w),
-    best: (2, w + 2 reach), room to work in.
+    reaches: (reach + 1,) how far up or down it may be where it is 0, 1, … pixels to the side; the first is the most,
+    254 at the most. down: (rows + 2 reach, w + 2 reach), room. All is counted in octets, as many of which as can be fit
+    into a vector.
     """
-    cdef Py_ssize_t h = mask.shape[0], w = mask.shape[1], rows = out.shape[0], i, j, k
+    cdef Py_ssize_t h = mask.shape[0], w = mask.shape[1], rows = out.shape[0], reach = reaches.shape[0] - 1, i, j, k
     cdef Py_ssize_t begin = max(0, top - reach), end = min(h, top + rows + reach)
-    cdef unsigned char far = <unsigned char>(reach + 1), n
-    cdef short none = 1 << 14, square, limit = <short>most
-    cdef unsigned char* row
-    cdef short* squares = &best[0, 0]
-    cdef short* least = &best[1, 0]
-    cdef short* left
-    cdef short* right
+    cdef unsigned char most
+    cdef unsigned char* middle
+    cdef unsigned char* left
+    cdef unsigned char* right
+    cdef unsigned char* here
     with nogil:
-        count_near(mask, begin, end, far, &down[0, 0])
-        for j in range(reach):
-            squares[j] = squares[reach + w + j] = none
+        memset(&down[0, 0], 255, down.shape[0] * down.shape[1])
+        count_near(mask, begin, end, reaches[0] + 1, &down[0, reach], down.shape[1])
         for i in range(rows):
-            row = &down[top + i - begin, 0]
+            middle = &down[top + i - begin, reach]
+            here = &out[i, 0]
+            most = reaches[0]
             for j in range(w):
-                n = row[j]
-                square = <short>n * <short>n
-                squares[reach + j] = least[j] = square if n < far else none
+                here[j] = middle[j] <= most
             for k in range(1, reach + 1):
-                left = squares + reach - k
-                right = squares + reach + k
-                square = <short>(k * k)
+                left = middle - k
+                right = middle + k
+                most = reaches[k]
                 for j in range(w):
-                    least[j] = min(least[j], <short>(min(left[j], right[j]) + square))
-            for j in range(w):
-                out[i, j] = least[j] <= limit
+                    here[j] |= min(left[j], right[j]) <= most
 
 
 cdef void count_near(
-    const unsigned char[:, ::1] mask, Py_ssize_t begin, Py_ssize_t end, unsigned char far, unsigned char* down
+    const unsigned char[:, ::1] mask, Py_ssize_t begin, Py_ssize_t end, unsigned char far, unsigned char* down,
+    Py_ssize_t wide,
 ) noexcept nogil:
     """As `count_down`, of the rows begin … end − 1 of the mask alone, in 8 bits: (end − begin, w)."""
     cdef Py_ssize_t w = mask.shape[1], i, j
@@ -207,17 +202,17 @@ cdef void count_near(
     cdef unsigned char* other
     for i in range(end - begin):
         here = &mask[begin + i, 0]
-        row = down + i * w
-        other = row - w
+        row = down + i * wide
+        other = row - wide
         if i > 0:
             for j in range(w):
-                row[j] = min(far, <unsigned char>(other[j] + 1)) if here[j] else 0
+                row[j] = min(far, <unsigned char>(other[j] + 1)) & <unsigned char>(-here[j])  # 0 where that is 0
         else:
             for j in range(w):
-                row[j] = far if here[j] else 0
+                row[j] = far & <unsigned char>(-here[j])
     for i in range(end - begin - 2, -1, -1):
-        row = down + i * w
-        other = row + w
+        row = down + i * wide
+        other = row + wide
         for j in range(w):
             row[j] = min(row[j], <unsigned char>(other[j] + 1))
 

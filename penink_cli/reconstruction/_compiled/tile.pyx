@@ -148,6 +148,8 @@ cdef class Tile(NearbyEdges):
             if self.tile_side[k] == 0:
                 h &= ~self.edge_mask(k) if side > 0 else self.edge_mask(k)
             m &= ~h
+            if not (m & self.pixels()):
+                return 0
         seen[0] = m & self.pixels()
         return 0
 

@@ -177,6 +177,8 @@ cdef class Views:
         for j in range(c0, c1 + 1, 4):
             px = broadcast_four(<float>(j - x)) + load_four(RAMP)
             for i in range(r0, r1 + 1):
+                if not self.alive[i - r0] >> (j - c0) & 15:
+                    continue  # in a crowd most are struck out before most edges have been looked at
                 py = <float>(i - y)
                 value = broadcast_four(ax * py) - broadcast_four(ay) * px
                 a_left = greater_four(value, of_a)
