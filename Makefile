@@ -2,8 +2,8 @@
 #
 #   make            virtual environment, install, samples/out/*.ps and *.preview.png
 #   make test       the tests            make lint    ruff, mypy, cython-lint
-#   make quick      the tests that neither draw with Ghostscript or Chromium nor take long
-#   make figures    the paper's figures with our own pictures: samples/out/figures.pdf, .png and table1.md
+#   make quick      the tests that need neither Ghostscript nor Chromium and do not take long
+#   make figures    the paper's figures with other pictures: samples/out/figures.pdf, .png and table1.md
 #   make gallery    the README's pictures: samples/gallery/*.png; samples/out/gallery.html and .pdf
 #   make bench      the measurements     make dist    wheel and source distribution
 #   make check-dist both, installed in an empty environment
@@ -12,7 +12,7 @@
 #   make check-roots  `make` and `make test` on an otherwise empty Debian 12 and 13 (ROOTS=bookworm)
 #   make cluster    twenty photographs on a Slurm of one node that is started for it, jobs killed, resumed: as root
 #   make fuzz       every reader against anything (SECONDS=600)
-#   make manual     the man pages and completion, from the help texts
+#   make manual     man pages, completion, schemas and tables that follow from help texts and registries
 #   make torture    a thousand runs killed, two hundred photographs
 #   make clean      remove what make made
 #
@@ -33,7 +33,7 @@ all: samples
 
 install: $(INSTALLED)
 
-# What only the system's package manager can bring (.ci/packages): first of all, installed in one go if permitted, else named.
+# Programs that only the system's package manager can bring (.ci/packages) come first: all at once where permitted, else named.
 NEEDS := $(if $(filter test quick bench,$(MAKECMDGOALS)),test,$(if $(filter install lint manual dist check-dist fuzz torture cluster,$(MAKECMDGOALS)),install,make))
 needs:
 	@PYTHON="$(PYTHON)" .ci/need $(NEEDS)
@@ -67,7 +67,7 @@ lint: $(INSTALLED)
 	$(BIN)/mypy
 	PATH="$(BIN):$$PATH" $(BIN)/cython-lint penink_cli
 
-# Fuzz every reader for SECONDS in all; what is found stays in tests/data/found, and `make test` runs it.
+# Fuzz every reader for SECONDS in all. Inputs that break one stay in tests/data/found, and `make test` tries them.
 SECONDS ?= 600
 fuzz: $(INSTALLED)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check '.[fuzz]'

@@ -1,11 +1,11 @@
-"""How the kernels are compiled: found, translated one beside the other, then compiled by as many C compilers.
+"""How the kernels are compiled: found, translated in parallel, then compiled in parallel.
 
-This is the build's own backend: setuptools', and `build_ext` (`[tool.setuptools.cmdclass]` in pyproject.toml) with
-every `penink_cli/**/_compiled/*.pyx` as an extension module. A new kernel is found; nothing lists it. Cython tracks
-what each includes and cimports; flags of one kernel alone stand in its own first lines, as `# distutils:`.
+This is the build's backend: that of setuptools, with a `build_ext` (`[tool.setuptools.cmdclass]` in pyproject.toml) for
+which every `penink_cli/**/_compiled/*.pyx` is an extension module. New kernels are found; nothing lists them. Cython
+tracks what each includes and cimports. Flags of a single kernel stand in its first lines, as `# distutils:`.
 
-What Cython puts into every module that takes an array (the memoryview type, some 20 000 lines of C) stands once, in
-`penink_cli._shared`: that halves what is compiled, and what a short-lived process loads.
+The memoryview type, some 20 000 lines of C that Cython puts into every module that takes an array, stands once, in
+`penink_cli._shared`. That halves the code to compile, and the code that a short-lived process loads.
 """
 
 import os
@@ -35,7 +35,7 @@ class BuildKernels(build_ext):
     """`build_ext` that finds the kernels and builds them in parallel."""
 
     def initialize_options(self) -> None:
-        """Nothing is known yet of the C compiler."""
+        """Begin with no flag tried on the C compiler."""
         super().initialize_options()
         self._flags: dict[str, bool] = {}
 
@@ -49,7 +49,7 @@ class BuildKernels(build_ext):
             self.parallel = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
 
     def build_extensions(self) -> None:
-        """Translate all kernels, then compile them; what is up to date is left as it is."""
+        """Translate all kernels, then compile them; kernels that are up to date are left as they are."""
         translated = cythonize(
             self.extensions,
             force=self.force,
@@ -64,7 +64,7 @@ class BuildKernels(build_ext):
         super().build_extensions()
 
     def get_source_files(self) -> list[str]:
-        """What the source distribution needs beside the package's modules: kernels, their headers, this file."""
+        """The files of the source distribution beside the package's modules: kernels, their headers, this file."""
         headers = [f.as_posix() for kind in ("pxd", "h") for f in Path("penink_cli").glob(f"**/_compiled/*.{kind}")]
         return [*super().get_source_files(), *sorted(headers), Path(__file__).relative_to(Path.cwd()).as_posix()]
 

@@ -29,7 +29,7 @@ from penink_cli.outputs.registry import OUTPUTS
 class Entry(NamedTuple):
     """What there is to know of a subcommand before its module is loaded.
 
-    reads, writes: for the README's table. summary: first line of its help. parts: its own subcommands.
+    reads, writes: for the README's table. summary: first line of its help. parts: names of its own subcommands.
     """
 
     reads: str
@@ -39,7 +39,7 @@ class Entry(NamedTuple):
 
 
 def _outputs(reads: str) -> dict[str, Entry]:
-    """The subcommands of the outputs that are made of strokes, or of illustrations."""
+    """The subcommands of the outputs that read strokes, or illustrations."""
     found = {name: output for name, output in OUTPUTS.items() if output.reads == reads}
     return {name: Entry(reads, output.endings, output.summary) for name, output in found.items()}
 
@@ -176,7 +176,7 @@ def _run(arguments: Sequence[str]) -> int:
             raise
         _complain(path, str(error))
         return 1
-    except OSError as error:  # of click's own printing; all else that files do is a StreamError
+    except OSError as error:  # click could not print to standard output; errors of files are StreamErrors
         if os.environ.get("PENINK_DEBUG") == "1":
             raise
         _complain(path, str(streams.text_failure(error)))

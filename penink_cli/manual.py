@@ -1,6 +1,7 @@
-"""What follows from registries and help texts: man pages, completion, the README's table, names in schemas, textures.
+"""Files made of registries and help texts: man pages, completion, the README's table, names in schemas, textures.
 
-``python -m penink_cli.manual`` writes them, the first two into penink_cli/share, whence they are installed.
+``python -m penink_cli.manual`` writes them. Man pages and completion go to penink_cli/share, from where they are
+installed.
 """
 
 from __future__ import annotations
@@ -35,8 +36,15 @@ standard error says which. A file named by \fB\-o\fR is then as it was before.
 The command line is wrong.
 .SH ENVIRONMENT
 .TP
+.B NO_COLOR
+Set to anything, the name of the program in an error line has no colour on a terminal either.
+.TP
 .B PENINK_DEBUG
 Set to 1, an error shows its traceback.
+.TP
+.B PENINK_MESHER
+The library that parts a frame into regions, \fBtriangle\fR or \fBpythoncdt\fR; otherwise the first of these that is
+installed. Both give the same output.
 """
 
 
@@ -74,7 +82,7 @@ def man_page(name: str | None) -> str:
 
 
 def _parts(group: click.Group, context: click.Context) -> list[str]:
-    """What the subcommands of a subcommand do, each with its options."""
+    """The section on the subcommands of a subcommand, each with its options."""
     lines = [".SH SUBCOMMANDS"]
     for part in group.list_commands(context):
         command = group.get_command(context, part)
@@ -98,7 +106,7 @@ def _examples(paragraphs: list[tuple[str, str]]) -> list[str]:
 
 
 def _paragraphs(text: str) -> list[tuple[str, str]]:
-    r"""Paragraphs of a help text: ("text", one line), or ("lines", as they stand) after a \b."""
+    r"""Paragraphs of a help text: ("text", as one line), or after a \b ("lines", as they stand)."""
     result = []
     # CPython 3.13 takes the indentation off docstrings, earlier ones leave it.
     for paragraph in re.split(r"\n\s*\n", re.sub(r"(?m)^ +$", "", inspect.cleandoc(text))):
@@ -129,7 +137,7 @@ def _escaped(text: str) -> str:
 
 
 def completion_script(shell: str) -> str:
-    """What bash, zsh or fish read to complete penink's words."""
+    """The script by which bash, zsh or fish complete penink's words."""
     kinds: dict[str, type[ShellComplete]] = {"bash": BashComplete, "zsh": ZshComplete, "fish": FishComplete}
     complete = kinds[shell](penink, {}, "penink", "_PENINK_COMPLETE")
     text = complete.source_template % complete.source_vars()
@@ -137,7 +145,7 @@ def completion_script(shell: str) -> str:
 
 
 def files() -> Iterator[tuple[str, str]]:
-    """Path below share and content of everything that is installed."""
+    """The man pages and completion scripts: path below share, and content."""
     for name in (None, *SUBCOMMANDS):
         yield f"man/man1/penink{'-' + name if name else ''}.1", man_page(name)
     yield "bash-completion/completions/penink", completion_script("bash")
@@ -152,7 +160,7 @@ def filter_table() -> str:
 
 
 def derived() -> Iterator[tuple[Path, str]]:
-    """Files of the project of which a part follows from the registries, where they are, and their whole text."""
+    """Files of the project of which a part is made of the registries, and their whole text as it is to be."""
     schema = Path(__file__).parent / "formats" / "schemas" / "illustration.schema.json"
     yield schema, _enumerated(schema.read_text("utf-8"))
     readme = Path(__file__).parent.parent / "README.md"
@@ -164,12 +172,12 @@ def derived() -> Iterator[tuple[Path, str]]:
 
 
 def _enumerated(schema: str) -> str:
-    """The schema of illustrations with the names of all rules."""
+    """The text of the schema of illustrations with the names of all rules in it."""
     return re.sub(r'(?<="rule": \{ "enum": )\[[^]]*\]', json.dumps(list(RULES)), schema)
 
 
 def main() -> None:
-    """Write all files below the folder given; without one those of the project, the package's own share among them."""
+    """Write man pages and completion below the folder given; without one those of the project, and all other files."""
     root = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).parent / "share"
     for name, text in files():
         target = root / name
@@ -182,7 +190,7 @@ def main() -> None:
 
 
 def pack_tiles() -> None:
-    """Make and pack the textures that are in no file yet; one that is made anew is removed first."""
+    """Make and pack the shipped textures that have no file yet. To make one again, remove its file first."""
     from penink_cli.options import textures
 
     for name in textures.shipped():

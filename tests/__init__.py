@@ -1,4 +1,4 @@
-"""What ought to hold. Below: what a reader of the code once found wrong, and which test fails if it comes back.
+"""The tests. Below are defects that a reader of the code once found, and the tests that fail if they come back.
 
 An edge's strength was that of an unrelated place:
     arrangement/test_detection.py::test_a_new_vertex_has_no_strength_of_an_unrelated_place

@@ -37,12 +37,12 @@ def packages() -> dict[str, str]:
     return {program: package for program, package, _ in lines}
 
 
-PACKAGES = packages() | {"sh": "dash", "uname": "coreutils"}  # the two, which Python itself starts, are everywhere
+PACKAGES = packages() | {"sh": "dash", "uname": "coreutils"}  # Python itself starts these two, which are everywhere
 RENDERERS = ("gs", "chromium", "pdfimages", "rsvg-convert")
 
 
 def _watch(event: str, arguments: tuple[object, ...]) -> None:
-    """Fail a test that starts a program which is missing, or which nobody installs."""
+    """Fail a test that starts a program which is missing, or not in .ci/packages, or in the quick tier a renderer."""
     test = os.environ.get("PYTEST_CURRENT_TEST", "").rsplit(" (", 1)[0]
     if event != "subprocess.Popen" or not test:
         return
@@ -50,7 +50,7 @@ def _watch(event: str, arguments: tuple[object, ...]) -> None:
     name = os.path.basename(program)
     if "python" in name or name == "penink" or program.startswith((str(ROOT), tempfile.gettempdir())):
         return
-    listed = next((known for known in PACKAGES if known.startswith(name)), None)
+    listed = next((known for known in PACKAGES if known.startswith(name)), None)  # chromium-headless-shell is chromium
     assert listed, f"{name} is not in .ci/packages: nobody installs it for the tests"
     assert shutil.which(program), f"{name} is missing: run 'apt-get install {PACKAGES[listed]}' as root"
     if name.startswith(RENDERERS) and test in _quick:
@@ -58,7 +58,7 @@ def _watch(event: str, arguments: tuple[object, ...]) -> None:
         pytest.fail(f"{test} starts {name}: put it among RENDERED in tests/conftest.py")
 
 
-# A make that a test starts is not a part of the one that started the tests.
+# A make that a test starts is not to take itself for a part of the make that started the tests.
 for _name in ("MAKEFLAGS", "MAKELEVEL", "MFLAGS", "MAKEOVERRIDES"):
     os.environ.pop(_name, None)
 
@@ -66,8 +66,9 @@ _quick: set[str] = set()  # tests of the quick tier that are not marked `rendere
 sys.addaudithook(_watch)
 
 
-# What `make quick` leaves out, by the beginning of a test's name: what starts Ghostscript, Chromium or another program
-# that draws, and what takes long. A test of the quick tier that starts one of these programs fails.
+# Tests that `make quick` leaves out, by the beginnings of their names: those that start Ghostscript, Chromium or
+# another program that draws, and those that take long. A test of the quick tier that starts one of these programs
+# fails.
 RENDERED = (
     "tests/selfdrawing/", "tests/blasting/test_blast.py", "tests/arrangement/test_detection.py", "tests/test_chain.py",
     "tests/illustration/test_drawing.py", "tests/outputs/test_postscript.py", "tests/outputs/test_vector.py",
@@ -99,13 +100,13 @@ SLOW = (
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Fewer examples of each property in the quick tier."""
+    """Let the quick tier try fewer examples of each property."""
     if "not rendered" in config.option.markexpr:
         settings.load_profile("quick")
 
 
 def pytest_itemcollected(item: pytest.Item) -> None:
-    """Mark what the quick tier leaves out, and remember what is in it."""
+    """Mark tests that the quick tier leaves out, and remember those that it runs."""
     if "ghostscript" in getattr(item, "fixturenames", ()) or item.nodeid.startswith(RENDERED):
         item.add_marker(pytest.mark.rendered)
     if item.nodeid.startswith(SLOW):
@@ -116,9 +117,9 @@ def pytest_itemcollected(item: pytest.Item) -> None:
 
 @pytest.fixture(scope="session", autouse=True)
 def _signals_as_from_a_terminal() -> None:
-    """What nohup and a script's background ignore is no longer ignored by the processes that tests start.
+    """Let the processes that tests start obey the signals that nohup, or a script's background, has set to be ignored.
 
-    A handler that does nothing keeps this process alive as before; whatever it executes has the default again.
+    A handler that does nothing keeps this process alive as before; a program that it executes has the default again.
     """
     for number in (signal.SIGINT, signal.SIGHUP, signal.SIGTERM, signal.SIGQUIT):
         if signal.getsignal(number) == signal.SIG_IGN:
@@ -133,7 +134,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 def penink(request: pytest.FixtureRequest) -> Iterator[Run]:
     """Run ``penink ARGUMENTS`` as a process: penink("reduce", "--factor", "4", input=bytes).
 
-    The quick tier forks these processes from one that has imported all, which takes a tenth of the time.
+    The quick tier forks these processes from one that has imported everything, which takes a tenth of the time.
     """
 
     def run(*arguments: object, **options: object) -> subprocess.CompletedProcess[bytes]:
@@ -155,7 +156,7 @@ def penink(request: pytest.FixtureRequest) -> Iterator[Run]:
         if not options.keys() <= {"input", "cwd"} or began.keys() - now.keys() - {"PYTEST_CURRENT_TEST"}:
             return run(*arguments, **options)
         changed = {name: value for name, value in now.items() if began.get(name) != value}
-        given = options.get("input", os.open(os.devnull, os.O_RDONLY))
+        given = options["input"] if "input" in options else os.open(os.devnull, os.O_RDONLY)
         try:
             done = server.run(*arguments, stdin=given, cwd=options.get("cwd", Path.cwd()), env=changed)
         finally:

@@ -1,4 +1,4 @@
-"""Plates of several inks, drawn so that together they have the right colours."""
+"""Plates of several inks, drawn so that together they print the right colours."""
 
 from __future__ import annotations
 
@@ -13,10 +13,12 @@ def balanced(
     job: Job, plates: list[Plate], greys: list[str], over: list[str], white: list[str],
     hatched: Callable[[list[str], str], list[str]],
 ) -> list[str]:  # fmt: skip
-    """The strokes of plates that are drawn twice, by corrected tones, and pressed.
+    """The strokes of plates that are drawn, drawn again by corrected tones, and pressed.
 
-    greys: what each is blasted from. over: strokes that are ink already. hatched: draws such greys, under names of
-    that ending. Who asks for a tone curve wants other colours, and gets them uncorrected; one pen is pressed evenly.
+    greys: that each plate is blasted from. over: strokes that are on the sheet already. white: words of the white
+    lines.
+    hatched: draws such greys, under names of that ending. With --gamma, which asks for other colours, tones are not
+    corrected; with one pen for all strokes they are not pressed.
     """
     told = [word for grey in greys for word in ("--tone", grey)]
     told += [*(word for name in over for word in ("--ink", name)), *white]

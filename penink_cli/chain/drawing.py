@@ -28,7 +28,7 @@ def draw_one(
 ) -> None:  # fmt: skip
     """Draw a photo (None: standard input) into a file (None: standard output).
 
-    bench: the workbench. kept: what filters have made before, for a drawing that follows its files.
+    bench: the workbench. kept: what filters have made before, where `draw --watch` draws again. quiet: no progress bar.
     """
     options, given = request.options, request.given
     width, max_pixels = options["width"], options["max_pixels"]

@@ -1,7 +1,7 @@
 """Filters run one after another in one process, as in a pipe, and the command lines that do the same by hand.
 
-`draw` is such a chain, and what --verbose prints of it is what has been run: the bytes are the same because nothing
-else made them. What one filter hands to the next lies on a workbench, in no file.
+`draw` is such a chain. What --verbose prints is what has been run, so the same commands by hand make the same bytes.
+A workbench holds what one filter hands to the next; there are no files between them.
 """
 
 from __future__ import annotations
@@ -25,7 +25,12 @@ from penink_cli.options.plates import PLACE
 
 
 class Chain:
-    """say: receives each command line, once it has run. step: is told after each filter. kept: from chains before."""
+    """One chain.
+
+    bench: the workbench. taken: names of the user's own files, which the chain gives to nothing. threads, max_pixels:
+    for every filter that has such an option, None for its default. say: receives each command line, once it has run.
+    step: is told after each filter. kept: what filters of former chains have made, None for nothing.
+    """
 
     def __init__(
         self, bench: dict[str, bytes], taken: Iterable[str | None], threads: int | None, max_pixels: int | None,
@@ -50,22 +55,25 @@ class Chain:
         return wanted
 
     def from_standard_input(self, wanted: str) -> None:
-        """What filters read as `-` comes from standard input, which has it but once: by hand it is put in a file."""
+        """Let `-` in printed command lines be a file: several filters read it, but standard input can be read once."""
         self._standard_input = self.name(wanted)
         self._say(f"cat > {shlex.quote(self._standard_input)}")
 
     def put(self, name: str, text: str) -> None:
-        """A file that no filter has written."""
+        """Put a file on the bench that no filter has written."""
         self._bench[name] = text.encode()
         self._say(f"cat > {shlex.quote(name)} <<'END'\n{text}END")
 
     def run(self, filter_name: str, words: list[str], output: str | None, may_fail: bool = False) -> bool:
-        """Run a filter; output: a name on the bench, or the user's, None for standard output. Whether all was well."""
+        """Run a filter; whether it succeeded.
+
+        output: a name on the bench or of the user's, None for standard output. may_fail: a PeninkError is no error.
+        """
         target = [] if output is None else ["-o", output]
         return self._ran(filter_name, words, target, [output], may_fail)
 
     def run_plates(self, filter_name: str, words: list[str], pattern: str, count: int) -> list[str]:
-        """Run a filter that writes so many plates; the names of what it wrote: the pattern's, 1 and so on for {}."""
+        """Run a filter that writes so many plates; the names of these: the pattern with 1 and so on in place of {}."""
         while any(pattern.replace(PLACE, str(i + 1)) in self._taken for i in range(count)):
             pattern = f"drawing-{pattern}"
         outputs = [self.name(pattern.replace(PLACE, str(i + 1))) for i in range(count)]
@@ -105,11 +113,11 @@ class Chain:
         return together(first, second, self._threads)
 
     def lines(self, name: str) -> int:
-        """How many lines of text a file on the bench has: of strokes, one more than there are strokes."""
+        """How many lines of text a file on the bench has: a file of strokes has one more than it has strokes."""
         return self._bench[name].count(b"\n")
 
     def joined(self, names: list[str], output: str | None) -> None:
-        """The strokes of several files as one list; `draw` alone writes that."""
+        """Write the strokes of several files as one list, which no filter does."""
         import numpy as np
 
         from penink_cli.formats import strokes
@@ -127,7 +135,7 @@ class Chain:
 
 
 def _program() -> str:
-    """The command that warnings name."""
+    """The command that warnings name: the one that the user has called."""
     context = click.get_current_context(silent=True)
     return context.command_path if context else "penink"
 
@@ -142,7 +150,7 @@ def found(filter_name: str) -> click.Command:
 
 @contextmanager
 def bench() -> Iterator[dict[str, bytes]]:
-    """A workbench, on which photographs are remembered too, and nothing is warned of twice."""
+    """A workbench. While it is there, inputs that were read are remembered, and no warning is given twice."""
     from penink_cli.options.remembered import remembering_inputs
 
     heap.share()

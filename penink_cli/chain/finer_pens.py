@@ -11,7 +11,7 @@ from penink_cli.outputs.registry import of_illustrations
 def refine(job: Job) -> None:
     """Make the pens of the job's stages finer where the drawing is small.
 
-    A pen that the user has named stays. An archive is drawn with finer pens when it is drawn.
+    A pen that the user has named stays. An illustration gets its finer pens when it is drawn.
     """
     by = pens.part(job.width)
     if by == 1.0 or "pen" in job.given or of_illustrations(job.ending):

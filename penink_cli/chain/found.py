@@ -1,4 +1,4 @@
-"""What is found in a photo before a stroke is drawn: its grey, its edges, its telling lines, its directions."""
+"""The filters that look at a photo before a stroke is drawn: its grey, its edges, its telling lines, its directions."""
 
 from __future__ import annotations
 
@@ -6,8 +6,9 @@ from penink_cli.chain.job import ARCHIVE, Job, least_length
 from penink_cli.outputs.registry import of_illustrations
 
 COMPOSED_DPI = 288.0  # as `compose` has it
-POSTER_DPI = 1152.0  # pixels an inch that an illustration is made from: those of a drawing four times as wide
-# Squared grey levels a bit that a chain of edges of an archive saves; where --max-bytes makes it coarser afterwards.
+POSTER_DPI = 1152.0  # pixels an inch that an illustration is made from: enough for a drawing four times as wide
+# Squared grey levels a bit that a chain of an archive's edges must save, usually and where --max-bytes thins them
+# later.
 WORTH, RICH_WORTH = 160.0, 40.0
 FIELD_SIDE = 48  # samples of directions along the longer side of an archive
 
@@ -34,10 +35,10 @@ def _composing(job: Job) -> list[str]:
 
 
 def edges(job: Job, grey: str, size: tuple[int, int]) -> str:
-    """The edges of what is composed; for an archive those worth their bytes, and those that will be outlined."""
+    """The edges of the grey; for an archive only those that are worth their bytes or will be outlined."""
     told = job.words("edges", "detect-edges")
     if not of_illustrations(job.ending) and not job.enlarged(size):
-        told += ["--seen-at", repr(job.width)]  # the sizes of an illustration are not known, and all edges enlarge
+        told += ["--seen-at", repr(job.width)]  # not where sizes are unknown, nor where the grey is to be enlarged
     found = job.run("detect-edges", [*told, grey], "e.json")
     if job.ending != ARCHIVE:
         return found
@@ -55,14 +56,14 @@ def lines(job: Job, photo: list[str]) -> str | None:
     if "lines" not in job.stages:
         return None
     told = [*job.words("lines", "detect-lines"), *job.seen_at]
-    for name in ("density", "per-inch2"):  # what there is room for is what will be drawn
+    for name in ("density", "per-inch2"):  # an archive keeps the lines that it will have room for
         if job.seen_at and name in job.stages["lines"]:
             told += [f"--{name}", str(job.stages["lines"][name])]
     return job.run("detect-lines", [*told, *photo], "lines.json")
 
 
 def directions(job: Job, photo: list[str], edges: str, lines: str | None) -> str | None:
-    """The field that is hatched along, if any."""
+    """The field along which strokes run, if any."""
     own = job.given.get("directions_file")
     if own is None and ("directions" not in job.stages or not _follows(job)):
         return None

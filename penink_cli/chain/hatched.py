@@ -1,4 +1,4 @@
-"""Strokes of a drawing: telling lines and outlines first, then the hatching, which counts those as ink."""
+"""Strokes of a drawing: telling lines and outlines first, then the hatching, which counts these as ink."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def _outlines(job: Job, size: tuple[int, int], edges: str) -> list[str]:
 
 
 def _enlarged(job: Job, plate: Plate, edges: str) -> str:
-    """The grey that is blasted: reconstructed where the photo has fewer pixels than the drawing can show."""
+    """The grey of a plate that is blasted: reconstructed where it has fewer pixels than the drawing can show."""
     if not job.enlarged(plate.size):
         return plate.grey
     from penink_cli.illustration.drawing import grey_size

@@ -1,4 +1,4 @@
-"""One photo being drawn: the chain it goes through, what each stage is told, and its size on paper."""
+"""One photo being drawn: its chain of filters, what each stage is told, and its size on paper."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ if TYPE_CHECKING:
 
 ARCHIVE = ".penink"
 USUAL_TEXTURE = "crosshatch"  # as `blast` has it
-FADING = {"mask", "vignette"}
-COMPOSING = {"strength", "detail", "mix", "target", "style_name", *FADING}
-OUTLINE_LENGTH = 0.04  # of the photo's longer side: shorter chains are texture, and the hatching's to show
+FADING = {"mask", "vignette"}  # options that take tone away, and compose even at strength 0
+COMPOSING = {"strength", "detail", "mix", "target", "style_name", *FADING}  # options by which a call asks for composing
+OUTLINE_LENGTH = 0.04  # part of the photo's longer side: shorter chains are texture, which the hatching shows
 
 
 @dataclass(frozen=True)
@@ -42,9 +42,9 @@ class Job:
 
     @property
     def composes(self) -> bool:
-        """Whether plates are made of composed colours: where the call says how, or names a style that does.
+        """Whether plates are made of composed colours, and not of the photo's own.
 
-        Else they have the photo's own.
+        They are where the call says how to compose, or names a style that does.
         """
         moved = self.stages["compose"].get("strength") != 0 or not FADING.isdisjoint(self.given)
         return moved and not COMPOSING.isdisjoint(self.given)
@@ -61,7 +61,7 @@ class Job:
 
     @property
     def seen_at(self) -> list[str]:
-        """Words for filters that leave out what the drawing of an archive would not show."""
+        """Words that tell a filter to leave out what the drawing of an archive would not show."""
         return ["--seen-at", repr(self.width)] if self.ending == ARCHIVE else []
 
     def enlarged(self, size: tuple[int, int]) -> bool:
@@ -72,18 +72,18 @@ class Job:
 
     @property
     def texture(self) -> Texture:
-        """What is hatched with."""
+        """The texture of the hatching."""
         return find_texture(str(self.stages["blast"].get("texture", USUAL_TEXTURE)))
 
     def words(self, stage: str, filter_name: str) -> list[str]:
-        """What the stage's options say to the filter."""
+        """The words that tell the filter its options of the stage."""
         options = self.stages.get(stage, {})
         if filter_name == "blast" and "natural" not in options and self.texture.scales is not None:
             options = {**options, "natural": self.width}
         return words(stage, filter_name, options)
 
     def run(self, filter_name: str, words: list[str], wanted: str) -> str:
-        """Run a filter whose result is handed on under that name, or one like it; the name it got."""
+        """Run a filter whose result is handed on; the result's name on the bench, the wanted one or one like it."""
         name = self.chain.name(wanted)
         self.chain.run(filter_name, words, name)
         return name

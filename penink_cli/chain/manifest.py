@@ -14,15 +14,18 @@ from penink_cli.outputs.registry import writer
 if TYPE_CHECKING:
     from penink_cli.formats.style import Value
 
-DEVICE_SIDE = 254  # samples a side that a device is sent at the most
-RICH_ERROR = 2.0  # grey levels that the samples may be off where --max-bytes makes them fewer afterwards
+DEVICE_SIDE = 254  # most samples a side that a device is sent
+RICH_ERROR = 2.0  # grey levels by which samples may be off where --max-bytes makes them fewer later
 
 
 def illustrate(
     job: Job, plates: list[Plate], size: tuple[int, int], edges: str, lines: str | None, directions: str | None,
     output: str | None, page: list[str],
 ) -> None:  # fmt: skip
-    """Write the illustration, or the page that draws it. size: width and height of the grey, pixels."""
+    """Write the illustration, or the page that draws it.
+
+    size: width and height of the grey, pixels. page: words for the filter that writes it.
+    """
     layers = [_layer(job, plate, _reduced(job, plate, size, edges), edges, directions) for plate in plates]
     if lines:
         told = job.stages["lines"]
@@ -60,10 +63,10 @@ def _reduced(job: Job, plate: Plate, size: tuple[int, int], edges: str) -> str:
     auto = [*reduce, "--auto", "--seen-at", repr(job.width)]
     if "max_bytes" in job.given:
         auto += ["--max-error", repr(RICH_ERROR)]
-    elif job.stages["compose"].get("strength") != 0:  # else what is faint is to be faint
+    elif job.stages["compose"].get("strength") != 0:  # where nothing is composed, faint things are to be faint
         auto.append("--relative")
     auto.append(samples)
-    # A page draws itself. No grid comes near to a photo of noise or fine texture: half of it is enough.
+    # A page is sent what a device can take. For a photo of noise or fine texture no grid is near enough; half is taken.
     if job.ending == ".html" or not job.chain.run("reduce", auto, reduced, may_fail=True):
         shrink = max(2.0, max(size) / DEVICE_SIDE)
         smaller = f"{max(1, math.floor(size[0] / shrink))}x{max(1, math.floor(size[1] / shrink))}"
@@ -84,7 +87,7 @@ def _layer(job: Job, plate: Plate, samples: str, edges: str, directions: str | N
 
 
 def _number(name: str, value: Value) -> Value:
-    """The value of an option as a manifest has it: lengths in points."""
+    """The value of an option as a manifest has it, a length in points."""
     if name == "rule" or not isinstance(value, str):
         return value
     return parse_length(value) if name == "pen" else int(value) if name == "seed" else float(value)

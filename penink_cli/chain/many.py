@@ -15,7 +15,7 @@ from penink_cli.options.progress import progress
 
 
 def output_names(files: Sequence[str], folder: str, ending: str) -> list[str]:
-    """Where each photo is drawn; the folder is there afterwards.
+    """The file into which each photo is drawn. The folder is made, if need be.
 
     Raises UsageError where two photos would become one file, StreamError where the folder cannot be made.
     """
@@ -33,7 +33,7 @@ def output_names(files: Sequence[str], folder: str, ending: str) -> list[str]:
 
 
 def draw_all(request: Request, files: Sequence[str], outputs: Sequence[str]) -> None:
-    """Draw each photo into its file. PeninkError, after the last, names those that could not be drawn."""
+    """Draw each photo into its file. Raises PeninkError, after the last, which names those that could not be drawn."""
     failed = []
     with progress(len(files), "draw", request.options["quiet"]) as advance:
         for file, output in zip(files, outputs):

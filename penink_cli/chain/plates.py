@@ -12,10 +12,10 @@ from penink_cli.options.inks import CMYK
 
 @dataclass(frozen=True)
 class Plate:
-    """Grey that one ink draws: of the drawing's only one, or of several.
+    """The grey that one ink draws.
 
-    size: width and height of the grey, pixels. number: among the inks, from 1; 0 where there is one ink.
-    turn: degrees that its hatching is turned.
+    size: width and height of the grey, pixels. number: of the ink, from 1; 0 for a drawing of one ink, for which the
+    rest says nothing. name, colour: of the ink. turn: degrees by which its hatching is turned. seed: of its hatching.
     """
 
     grey: str
@@ -31,7 +31,7 @@ class Plate:
         return f"{self.number}-{wanted}" if self.number else wanted
 
     def words(self) -> list[str]:
-        """What `blast` is told of it."""
+        """Words that tell `blast` of the plate."""
         if not self.number:
             return []
         from penink_cli.composition.separation import SOLID
@@ -40,7 +40,7 @@ class Plate:
         return [*told, "--color", self.colour, "--layer", self.name]
 
     def members(self) -> dict[str, Any]:
-        """The same, as a manifest has it."""
+        """The same as members of a layer of a manifest."""
         if not self.number:
             return {}
         return {"name": self.name, "color": self.colour, "turn": self.turn, "seed": self.seed}
@@ -49,7 +49,7 @@ class Plate:
 def plates(job: Job, photo: list[str], size: tuple[int, int]) -> list[Plate]:
     """The plate of each of the job's inks, the lightest first.
 
-    photo: words that name what has their colours; size: its width and height, pixels.
+    photo: words that name the photo, or the picture composed of it; size: its width and height, pixels.
     """
     from penink_cli.composition.separation import lightest_first, turns
 

@@ -1,4 +1,4 @@
-"""What a call of `draw` asks for, whatever the photo: its options, its style, what each filter is told of them."""
+"""What a call of `draw` asks for, whatever the photo: options, style, and what each filter is told of these."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from penink_cli.outputs.registry import writer
 if TYPE_CHECKING:
     from penink_cli.formats.style import Style, Value
 
-OUTLINE_STRENGTH = 0.2  # the grey step that is worth an outline
-# The options that are told to one stage: the stage, and their names there.
+OUTLINE_STRENGTH = 0.2  # the least grey step that is outlined where the style does not say
+# Options of `draw` that one stage is told: the stage, and the option's name there.
 _TOLD = {
     "texture_name": ("blast", "texture"),
     "gamma": ("blast", "gamma"),
@@ -46,11 +46,11 @@ class Request:
     style: Style
 
     def read_anew(self) -> Request:
-        """The same, with the style as its file is now."""
+        """The same request, with the style as its file says now."""
         return replace(self, style=checked_style(self.options["style_name"]))
 
     def stages(self) -> dict[str, dict[str, Value]]:
-        """The style's options of each stage, those that the user has named in their place; a new table each time."""
+        """The options of each stage: those of the style, or in their place those of the call. It is a new table."""
         given = self.given
         stages = {stage: dict(options) for stage, options in self.style.stages.items()}
         for name in ("outline", "lines"):
@@ -62,7 +62,7 @@ class Request:
         stages.setdefault("compose", {"strength": 0.0})
         asked = {"detail", "mix", "target"} & set(given)
         if "strength" not in given and asked and stages["compose"].get("strength") == 0:
-            del stages["compose"]["strength"]  # who asks for a target asks for composing
+            del stages["compose"]["strength"]  # a call with a target asks for composing
         stages.setdefault("blast", {})
         for name, (stage, option) in _TOLD.items():
             if name in given:
@@ -99,7 +99,7 @@ def checked_style(name: str) -> Style:
 
 
 def page_words(ending: str, given: dict[str, Any]) -> list[str]:
-    """What the filter that writes the picture is told of the page; UsageError where it knows no such thing."""
+    """Words that tell the filter that writes the picture about the page. Raises UsageError for an option it has not."""
     by = writer(ending)
     known = {parameter.name for parameter in found(by).params} if by else set()
     words: list[str] = []
@@ -115,7 +115,7 @@ def page_words(ending: str, given: dict[str, Any]) -> list[str]:
 
 
 def pen_of_all(path: str) -> float | None:
-    """The width, points, of the pens of a pens file where all have the same, else None."""
+    """The width, points, that all pens of a pens file have, None where widths differ."""
     from penink_cli.formats import pens
 
     with streams.reading(path) as stream:

@@ -13,7 +13,7 @@ from penink_cli.options.common import NameOrFile
 if TYPE_CHECKING:
     from penink_cli.formats.style import Style, Value
 
-#: The filters of each stage that a style may tell something.
+#: The stages of a style, and the filters of each.
 FILTERS = {
     "compose": ("compose",),
     "edges": ("detect-edges",),
@@ -22,7 +22,7 @@ FILTERS = {
     "outline": ("outline",),
     "blast": ("blast",),
 }
-# What belongs to one call and not to a style.
+# Parameters of filters that belong to a call and not to a style.
 _NOT_A_STYLE_S = {"output", "max_pixels", "quiet", "help", "threads", "verbose", "width", "dpi", "device_dpi", "maxval"}
 
 
@@ -35,7 +35,7 @@ def options_of(stage: str) -> dict[str, tuple[str, click.Option]]:
                 continue
             if isinstance(parameter.type, click.Path) and not isinstance(parameter.type, NameOrFile):
                 continue
-            for name in parameter.opts:  # and not what turns it off
+            for name in parameter.opts:  # without the names that turn a flag off
                 if name.startswith("--"):
                     known[name.removeprefix("--")] = filter_name, parameter
     return known

@@ -40,7 +40,7 @@ def least(dot_pt: float) -> float:
 
 
 def disc(width: Floats, pixel: float) -> Floats:
-    """The width of the disc that is as dark as what a device with such pixels paints of a dot, in one unit.
+    """The width of the disc that is as dark as what a device paints of a dot. width, pixel: in one unit.
 
     >>> disc(np.array([0.0, 1.0, 10.0]), 1.0).round(3).tolist()
     [1.111, 2.178, 11.239]
@@ -51,14 +51,14 @@ def disc(width: Floats, pixel: float) -> Floats:
 
 
 def pen_of(width: Floats, pixel: float) -> Floats:
-    """The inverse of `disc`: the pen of a dot that is painted so wide; below 0 where none is."""
+    """The inverse of `disc`: the width of the dot that is painted so wide; below 0 where there is none."""
     side = EDGE * pixel
     told: Floats = np.sqrt(width * width + (4 / math.pi - 1) * 4 / math.pi * side * side) - 4 / math.pi * side
     return told
 
 
 def gains(strokes: Strokes, dpi: float) -> Floats:
-    """Points (s,) that a device of this resolution adds to the width of each stroke, on its way's average."""
+    """Points (s,) that a device of this resolution adds to the width of each stroke, as the mean along the stroke."""
     return _gains(strokes, dpi, disc(strokes.widths, 72 / dpi) - strokes.widths)
 
 
@@ -73,7 +73,7 @@ def narrowed(strokes: Strokes, dpi: float) -> Strokes:
 
 
 def _gains(strokes: Strokes, dpi: float, of_dots: Floats) -> Floats:
-    """The gain of each stroke, that of dots being told."""
+    """The gain (s,) of each stroke, points. of_dots: (s,) the gain of each if it is a dot."""
     if not len(strokes):
         return np.zeros(0)
     steps = np.diff(strokes.points, axis=0, prepend=strokes.points[:1])

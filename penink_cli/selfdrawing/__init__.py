@@ -2,8 +2,8 @@
 
 html.write, postscript.write    a page; an EPS
   data                            samples, edges, texture as the renderer reads them
-    lattice                         vertices where 32-bit reals decide as we do
+    lattice                         vertices where 32-bit reals decide as doubles do
     telling                         lines, each with the size from which on there is room for it
-  constants                       the renderer's prologue: the numbers of blasting/constants
-  packer                          renderer/*.js and *.ps without what only people need, compressed
+  constants                       the renderer's prologue: the numbers that it shares with Python
+  packer                          renderer/*.js and *.ps without comments and needless spaces, compressed
 """

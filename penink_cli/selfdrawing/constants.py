@@ -28,7 +28,7 @@ from penink_cli.reconstruction.kernels import T1
 from penink_cli.selfdrawing import telling
 from penink_cli.selfdrawing.data import ANGLES
 
-#: Numbers of other modules, by the names they go by in the renderers.
+#: Numbers of other modules, and of the renderers alone, by their names in the renderers.
 OTHERS: dict[str, Any] = {
     "PRINT_FULL": pens.FULL, "PRINT_LEAST": pens.LEAST, "PRINT_DOTS": pens.DOTS, "MEAN": MEAN, "FILLED": FILLED,
     "SPAN_PARTS": screens.SPAN_PARTS, "EVER": screens.EVER, "T1": T1, "ANGLES": ANGLES,
@@ -41,16 +41,16 @@ OTHERS: dict[str, Any] = {
     # dashes: least length, and the shortest and the longest stretch of line that holds one; the shortest is not that of
     # `engraving`, which keeps a least gap as well
     "DASH_PT": engraving.DASH_PT, "SHORTEST_PERIOD_PT": 11.0, "LONGEST_PERIOD_PT": engraving.LONGEST_PERIOD_PT,
-    # every second line leaves off between these tones, in parts of that of the finest lines
+    # every second line leaves off between these tones, in parts of the tone of the finest lines
     "LEAVES_OFF": (0.8, 1.6),
-    # what is shorter than so many of them is a dash
+    # a run shorter than so many DASH_PT is a dash
     "DASHES": 4.0,
     # a dash is tapered over this part of its length at both ends; waver goes to and fro over so many points
     "DASH_TAPER": 0.25, "GRAIN": 4 * tracks.WAVER_LENGTH_PT,
-    # tone steps by so many 255ths over an edge at which lines end
+    # lines end at an edge over which tone steps by more 255ths than this
     "WALL": 26,
 }  # fmt: skip
-#: Those that only the page has use for: what follows a field.
+#: Numbers for lines along a field, which the page alone draws.
 FOLLOWING: dict[str, Any] = {
     "LINK_LEAK": phase.LEAK, "LINK_LEAST": phase.LEAST, "LINK_ALONG": phase.ALONG,
     "COARSE_SWEEPS": phase.COARSE_SWEEPS, "SWEEPS": phase.SWEEPS, "LINE_SMOOTHING": pen_lines.SMOOTHING,
@@ -61,31 +61,37 @@ FOLLOWING: dict[str, Any] = {
     "JOIN_BACK": joining.BACK, "JOIN_ASIDE": joining.ASIDE, "JOIN_APART": joining.APART,
     "JOIN_OVERLAP": joining.OVERLAP, "JOIN_STRAIGHT": joining.STRAIGHT, "JOIN_SLANT": joining.SLANT,
     "JOIN_WORSE": joining.WORSE,
-    # of two lines that end in one place one leaves off so many samples sooner
+    # of two lines that end in one place one ends so many samples sooner
     "SOONER": 10,
     "CELL_PART": taking_turns.CELL, **taking_turns.SEARCH,
     # cells of tone between the places at which a field is looked up
     "FIELD_CELLS": 3,
-    # what lines cover where it is black, which the pen's pressure closes
+    # the part of a black place that lines cover; the pen's pressure closes the rest
     "CLOSE": 0.95,
-    # shorter strokes are left out; so much lighter or heavier than usual the pen is pressed at the most, and in black
-    "STROKE_LEAST": 4, "PRESSED": (0.75, 1.3, 1.8),
+    # strokes of fewer points are left out
+    "STROKE_LEAST": 4,
+    # the pen is pressed at least and at most so much, 1 being usual, and so much in black
+    "PRESSED": (0.75, 1.3, 1.8),
 }  # fmt: skip
 
 
 def shared() -> dict[str, Any]:
-    """Every number, and every row of numbers, that the renderers share with Python."""
+    """Every number, and every row of numbers, that both renderers share with Python, by name."""
     return {name: value for name, value in vars(constants).items() if name.isupper()} | OTHERS
 
 
 def javascript() -> str:
-    """One `const` of all of them."""
+    """The prologue of the page: one `const` of all numbers."""
     listed = ", ".join(f"{name} = {_number(value, '[%s]', ', ')}" for name, value in (shared() | FOLLOWING).items())
     return f"// The numbers of penink_cli/selfdrawing/constants.py.\nconst {listed};\n"
 
 
 def postscript() -> str:
-    """A definition each. Waves, whose numbers hot procedures want one by one, are WAVER0, WAVER1 …, in degrees."""
+    """The prologue of the EPS: a definition a number.
+
+    The numbers of waves are WAVER0, WAVER1 … and WAVE0 …, for hot procedures take them one by one; angles are in
+    degrees.
+    """
     numbers = shared()
     waver, wave = numbers.pop("WAVER"), numbers.pop("WAVE")
     degrees = [value if i % 3 == 0 else round(math.degrees(value), 4) for i, value in enumerate(waver)]

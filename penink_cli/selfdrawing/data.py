@@ -1,4 +1,4 @@
-"""What a renderer is sent of an illustration, as `renderer/data.ps` and `renderer/data.js` read it."""
+"""The data that a renderer is sent of an illustration, as `renderer/data.ps` and `renderer/data.js` read them."""
 
 from __future__ import annotations
 
@@ -26,18 +26,23 @@ from penink_cli.ground.model import (
 from penink_cli.selfdrawing import telling
 from penink_cli.selfdrawing.lattice import PARTS, on_lattice
 
-#: Arrays of a Level 2 interpreter hold 65535 entries, one a sample: 254 × 254 and its border.
+#: Samples a side. Arrays of a Level 2 interpreter hold 65535 entries: one for each of 254 × 254 samples and their
+#: border.
 MOST_SAMPLES = 254
 MOST_EDGES = 20000
-#: Eased samples are sent at so many levels at the most: finer ones are more bytes and show nothing.
+#: Levels of grey at which eased samples are sent at the most: more levels are more bytes and show no difference.
 EASED = 64
-#: Of telling lines, all together.
+#: Points of all telling lines of a layer together.
 MOST_POINTS = 40000
 
 
 @dataclass(frozen=True)
 class FieldData:
-    """Directions: a byte a sample, coded as grey is, in the ANGLES of a half turn that archives keep."""
+    """A field of directions.
+
+    width, height: samples. angles: a byte a sample, coded as `samples_bytes` codes grey: numbers of the ANGLES that
+    archives divide a half turn into.
+    """
 
     width: int
     height: int
@@ -46,7 +51,12 @@ class FieldData:
 
 @dataclass(frozen=True)
 class LineData:
-    """Telling lines, the dark ones first (see `telling`), on a grid of across × down places, and how they are drawn."""
+    """Telling lines, and how they are drawn.
+
+    dark, white: how many there are of each, the dark ones first. across, down: places of the grid that the points lie
+    on.
+    lines: as of `telling.line_bytes`.
+    """
 
     choice: LineChoice
     dark: int = 0
@@ -60,14 +70,13 @@ class LineData:
 class LayerData:
     """One layer.
 
-    width, height: of the samples. levels: of grey they are sent at.
-    samples: a byte a sample, coded. edges: bytes of the chains.
-    chains, outlined, vertices, ends: how many chains, how many of them (the first) are outlined, vertices, edges.
-    outline_pt: pen of the outlines. gamma: of the tone curve. table: of the texture.
-    family: the number of the first layer with the same texture and pen, whose strokes lie in the same places.
-    form: of each of the texture's layers of hatching the degrees from a field, and the tones where it begins and ends.
-    field: the directions, None where there are none that the strokes follow. engraving: lines that swell, instead of
-    the table's screens. told: the telling lines. color: of the ink, #rrggbb; layers of another know nothing of it.
+    width, height: samples. levels: of grey. samples: a byte a sample, as of `samples_bytes`. edges: bytes of the
+    chains.
+    chains: how many chains there are. outlined: how many of these, the first ones, are outlined. vertices, ends: how
+    many vertices and edges there are. outline_pt: pen of the outlines. gamma: of the tone curve. table: of the texture.
+    family: see `family`. form: of each of the texture's layers of hatching the degrees from a field, and the tones
+    where it begins and ends. field: the directions, None where strokes follow none. engraving: lines that swell, in
+    place of the table's screens, or None. told: the telling lines. color: of the ink, #rrggbb.
     """
 
     width: int
@@ -91,7 +100,7 @@ class LayerData:
 
     @property
     def black(self) -> float:
-        """The tone beyond which it is solid: where a last layer begins that goes up to 1; 1 for none."""
+        """The tone beyond which all is solid: where the last of several layers begins, if it goes up to 1; else 1."""
         return self.form[-1][1] if len(self.form) > 1 and self.form[-1][2] >= 1 else 1.0
 
 
@@ -110,7 +119,7 @@ def layers(illustration: Illustration) -> list[LayerData]:
 
 
 def family(illustration: Illustration, i: int) -> int:
-    """The first layer with layer i's texture and pen: their strokes lie in the same places."""
+    """The number of the first layer with layer i's texture, pen and turn, whose strokes lie in the same places."""
     mine = illustration.layers[i]
 
     def alike(layer: Layer) -> bool:
@@ -121,6 +130,7 @@ def family(illustration: Illustration, i: int) -> int:
 
 
 def _layer(layer: Layer, w: int, h: int, number: int, family: int) -> LayerData:
+    """The data of a layer of w × h samples. number: for error lines, from 1."""
     chains: list[bytes] = []
     outlined = 0
     vertices, ends = np.zeros((0, 2), np.int64), np.zeros((0, 2), np.int64)
@@ -153,17 +163,18 @@ def follows(layer: Layer) -> bool:
 
 
 def _form(layer: Layer) -> tuple[tuple[float, float, float], ...]:
+    """See `LayerData.form`."""
     hatch = layer.texture.layers
     return tuple((one.angle - hatch[0].angle if one.turn is None else one.turn, one.low, one.high) for one in hatch)
 
 
 def _field(layer: Layer) -> FieldData | None:
-    """The directions, none where the texture's strokes do not follow any."""
+    """The directions, None where the texture's strokes do not follow any."""
     field = layer.directions
     if field is None or not follows(layer):
         return None
     reach = -(-max(field.cos2.shape) // MOST_SAMPLES)
-    cos2, sin2 = field.cos2[::reach, ::reach], field.sin2[::reach, ::reach]  # more are of no use
+    cos2, sin2 = field.cos2[::reach, ::reach], field.sin2[::reach, ::reach]  # more samples would show no difference
     turn = np.array([direction(360.0 * k / ANGLES) for k in range(ANGLES)])
     h, w = cos2.shape
     angles = np.empty((h, w), np.int64)
@@ -173,6 +184,7 @@ def _field(layer: Layer) -> FieldData | None:
 
 
 def _told(layer: Layer) -> LineData:
+    """The telling lines. Raises LimitError for more than MOST_POINTS points."""
     if layer.lines is None or not len(layer.lines):
         return LineData(layer.line)
     which, steps = telling.told(layer.lines, layer.line)
@@ -187,7 +199,7 @@ def _told(layer: Layer) -> LineData:
 def ink_levels(layer: Layer) -> tuple[Ints, int]:
     """Samples (h, w) as levels of ink, 0 for paper, and how many levels there are.
 
-    A device has no time to ease few grey levels: it is sent eased ones, in parts of a level.
+    A device has no time to ease few grey levels, so it is sent eased samples, in fractions of a level.
     """
     most = layer.levels - 1
     grey = np.floor(layer.samples.values * float(most) / layer.samples.maxval + 0.5).astype(np.int64)
@@ -201,7 +213,7 @@ def ink_levels(layer: Layer) -> tuple[Ints, int]:
 
 
 def ink_bytes(levels: Ints, count: int) -> Ints:
-    """The same in 255ths, as the devices compute them."""
+    """Levels of ink (h, w), of which there are `count`, in 255ths, as devices compute them."""
     return np.floor(levels * (255.0 / (count - 1)) + 0.5).astype(np.int64)
 
 
@@ -224,7 +236,7 @@ def _within_the_frame(vertices: Ints, ends: Ints, strength: Floats | None, w: in
 
 
 def _outlined(layer: Layer, vertices: Ints, ends: Ints, strength: Floats | None, w: int, h: int) -> list[Run]:
-    """What the layer's outline choice says is outlined of its edges on the lattice, the most telling first."""
+    """The runs of a layer's edges on the lattice that its outline choice outlines, the most telling first."""
     if layer.outline is None or layer.edges is None:
         return []
     around = None
@@ -241,16 +253,17 @@ def _outlined(layer: Layer, vertices: Ints, ends: Ints, strength: Floats | None,
 
 
 def _pressure(run: Run, layer: Layer) -> int:
-    """The pen's, in 255ths, 0 for a pen that does not swell."""
+    """The pen's pressure along a run, in 255ths; 0 for a pen that does not swell."""
     even = layer.outline is not None and layer.outline.even
     return 0 if even else math.floor(255 * run.pressure + 0.5)
 
 
 def samples_bytes(ink: Ints, levels: int) -> bytes:
-    """Each level as its difference, modulo levels, from the median of left, upper and left + upper - upper left.
+    """Each level of ink (h, w) as its difference, modulo levels, from a median of its neighbours.
 
-    Where there is none, left is the upper and upper the left one; the first of all is 0. Of the usual
-    predictors this left the fewest bytes to Flate: 3.2 KB of 96 x 96 samples of the camera man.
+    The median is of left, upper and left + upper - upper left. In the first column left is the upper one, in the first
+    row upper is the left one; the first sample of all is compared with 0. Of the usual predictors this one leaves the
+    fewest bytes to Flate: 3.2 KB of 96 x 96 samples of the camera man.
     """
     left, upper, corner = np.empty_like(ink), np.empty_like(ink), np.empty_like(ink)
     left[:, 1:], upper[1:], corner[1:, 1:] = ink[:, :-1], ink[:-1], ink[:-1, :-1]
@@ -261,7 +274,10 @@ def samples_bytes(ink: Ints, levels: int) -> bytes:
 
 
 def _chain_bytes(at: Ints, pressure: int | None = None) -> bytes:
-    """A chain's vertices (n, 2): number of edges, of outlines the pressure, the first vertex, steps."""
+    """A chain of vertices (n, 2) on the lattice: number of edges, of outlines the pressure, the first vertex, steps.
+
+    A step that is too long for two bytes is two bytes of 128, and the vertex itself.
+    """
     at = at + 1
     x, y = at[0].tolist()
     parts = [(len(at) - 1).to_bytes(2, "big"), b"" if pressure is None else bytes([pressure])]
@@ -275,14 +291,15 @@ def _chain_bytes(at: Ints, pressure: int | None = None) -> bytes:
 
 
 def is_sent(screen: screens.Screen) -> bool:
-    """Whether a screen's strokes are sent: a renderer makes lines itself, and repeats what it has."""
+    """Whether a screen's strokes are sent. A renderer makes those of hatching itself, and repeats those of a copy."""
     return screen.layer is None and screen.again is None
 
 
 def tile_bytes(screen: screens.Screen) -> bytes:
-    """Strokes that are not lines: threshold in 255ths, first point, three steps from there, in quarters of a point.
+    """The strokes of a tile: each a threshold in 255ths, its first point, and three steps from there.
 
-    Those of a tile that grows: span, two bytes, and threshold, two bytes; then the points likewise.
+    Points are in quarters of a point. Of a tile that grows a stroke begins with its span, two bytes, and its threshold
+    has two bytes.
     """
     control = np.rint(screen.points.reshape(-1, 4, 2) / screens.GRID_PT).astype(np.int64)
     if screen.spans is None:

@@ -1,6 +1,6 @@
 """An illustration as one web page that draws itself: samples, edges, texture and a renderer in JavaScript.
 
-Nothing is fetched; it works from a local file with the network off. The program is `renderer/*.js`.
+The page fetches nothing: it works from a local file with the network off. The program is `renderer/*.js`.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ SOURCES = (
     "unpack.js", "constants.js", "reconstruct.js", "drawing.js", "outline.js", "telling.js", "phase.js", "follow.js",
     "even.js", "engrave.js", "data.js", "raster.js", "page.js",
 )  # fmt: skip
-#: What stands in for sources that are not needed, where others call them all the same.
+#: Stand-ins for sources that a page does not need but whose functions are called all the same.
 INSTEAD = {
     "telling.js": "const tellingOf = () => [], tellingOn = () => [], lighten = () => {};",
     "outline.js": "const outlinesOf = () => [];",
@@ -29,7 +29,11 @@ INSTEAD = {
 
 
 def write(illustration: Illustration, title: str, readable: bool = False, reload: bool = False) -> bytes:
-    """The page. readable: with the program's comments, not packed. reload: it follows its file."""
+    """The page, UTF-8.
+
+    readable: the program is not packed, and keeps its comments. reload: the page loads itself again when its file
+    changes. Raises LimitError for more samples, edges or lines than a device can draw.
+    """
     parts = layers(illustration)
     data = b"".join(map(_bytes, parts))
     program = _program(parts)

@@ -1,4 +1,4 @@
-"""Packing a renderer: its sources without what only people need, and the filters PostScript can undo."""
+"""Packing a renderer: its sources without comments and needless spaces, and codings that PostScript can undo."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ _PS_TOKENS = re.compile(r"%[^\n]*|\((?:[^()\\]|\\.)*\)|[{}\[\]]|/?[^\s{}\[\]()%/
 
 
 def source(name: str) -> str:
-    """One of the renderers' source files, or the prologue that is written for each language."""
+    """One of the renderers' source files, or one of the prologues, which are made."""
     if name in PROLOGUES:
         return PROLOGUES[name]()
     return (resources.files("penink_cli.selfdrawing") / "renderer" / name).read_text("utf-8")
 
 
 def strip_postscript(text: str) -> str:
-    """The program without comments, and no white space but where two words would run together.
+    """The program without comments, and without white space but where two words would run together.
 
     >>> strip_postscript("/Half { 2 div } def  % of it")
     '/Half{2 div}def'
@@ -42,12 +42,12 @@ def strip_postscript(text: str) -> str:
 
 
 def deflate(data: bytes) -> bytes:
-    """For /FlateDecode. The level is fixed and so are the bytes, as far as zlib promises."""
+    """Coded for /FlateDecode, at a fixed level: one version of zlib always gives the same bytes."""
     return zlib.compress(data, 9)
 
 
 def lzw(data: bytes) -> bytes:
-    """For /LZWDecode: codes of 9 to 12 bits, most significant bit first, lengthened one code early."""
+    """Coded for /LZWDecode: codes of 9 to 12 bits, most significant bit first, lengthened one code early."""
     table: dict[bytes, int] = {bytes([i]): i for i in range(256)}
     codes: list[tuple[int, int]] = [(256, 9)]
     following, width, word = 258, 9, b""
@@ -78,7 +78,7 @@ def lzw(data: bytes) -> bytes:
 
 
 def ascii85(data: bytes) -> bytes:
-    """For /ASCII85Decode, in lines of 80 of which none looks like a comment of the structuring conventions."""
+    """Coded for /ASCII85Decode, in lines of at most 80 characters, none of which looks like a structuring comment."""
     text = base64.a85encode(data)
     lines = [text[i : i + 79] for i in range(0, len(text), 79)]
     return b"\n".join(b" " + line if line.startswith(b"%") else line for line in lines) + b"\n~>\n"
@@ -87,7 +87,7 @@ def ascii85(data: bytes) -> bytes:
 def letters(data: bytes) -> str:
     """Five letters for each four bytes, the last filled up with zeros, that HTML and JavaScript leave as they are.
 
-    They are the 85 from ( on, but } for < and ~ for the backslash. Base 64 takes 7 % more.
+    The letters are the 85 characters from ( on, but } for < and ~ for the backslash. Base 64 takes 7 % more.
 
     >>> letters(bytes([0, 0, 0, 1]))
     '(((()'

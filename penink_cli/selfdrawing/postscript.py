@@ -1,8 +1,8 @@
 """An illustration as one EPS that draws itself: samples, edges, texture and a renderer in PostScript.
 
-It reads the current matrix and the device's resolution and draws strokes of constant width and density
-for the size it is given. The program is `renderer/*.ps`. It keeps to a dictionary of its own between save and
-restore, leaves the stacks as found and uses no operator that changes the device.
+The program in it, `renderer/*.ps`, reads the current matrix and the device's resolution, and draws strokes of constant
+width and density for the size that the picture has there. It keeps to a dictionary of its own between save and
+restore, leaves the stacks as it found them, and uses no operator that changes the device.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ SOURCES = (
     "constants.ps", "reconstruct.ps", "texture.ps", "drawing.ps", "outline.ps", "telling.ps", "engrave.ps", "data.ps",
     "page.ps",
 )  # fmt: skip
-#: What stands in for sources that are not needed, where others call them all the same.
+#: Stand-ins for sources that a picture does not need but whose procedures are called all the same.
 INSTEAD = {
     "telling.ps": "/PlanTold { } def /PaintTold { } def",
     "outline.ps": "/PlanOutlines { } def /PaintOutlines { } def",
@@ -28,7 +28,11 @@ INSTEAD = {
 
 
 def write(illustration: Illustration, packing: str = "flate") -> bytes:
-    """The EPS. packing: flate (Level 3), lzw (Level 2), or readable: the text that people read."""
+    """The EPS.
+
+    packing: flate, for Level 3 interpreters; lzw, for Level 2; or readable, with its comments. Raises LimitError for
+    more samples, edges or lines than a device can draw.
+    """
     parts = layers(illustration)
     width, height = illustration.width, illustration.height
     head = (

@@ -1,8 +1,8 @@
 """Telling lines as a renderer is sent them: each with the size of the picture from which on there is room for it.
 
-Which lines there is room for is a question for all of them together (`lines.choice`), and too long a one for a printer.
-Here it is answered once, for a ladder of sizes; a device draws the lines that enter at its own step of the ladder or
-below. A larger picture has more room, so a line that has entered hardly ever leaves again.
+Which lines there is room for depends on all of them together (`lines.choice`), which takes too long on a printer. Here
+it is found out once, for a ladder of sizes; a device draws the lines that enter at its own step of the ladder or below.
+A larger picture has more room, so a line that has entered hardly ever leaves again.
 """
 
 from __future__ import annotations
@@ -15,18 +15,19 @@ from penink_cli.blasting.telling import WHITE
 from penink_cli.ground.model import Floats, Ints, LineChoice, Lines
 from penink_cli.lines.choice import chosen
 
-#: Widths of the picture on paper, points, at which it is asked: half an inch to 22 inches. With more room none is left.
+#: The ladder: widths of the picture on paper, points, from half an inch to 22 inches; larger pictures add no more
+#: lines.
 LADDER = tuple(round(36 * 2 ** (k / 2), 3) for k in range(12))
-#: Places are whole numbers, so many to the root of the frame's area, as in archives; none may be above MOST.
+#: The grid has SIDE places to the root of the frame's area, as in archives, but no side has more than MOST.
 SIDE, MOST = 1280, 65000
 #: Weights are kept in 15ths.
 WEIGHTS = 15
-#: Steps are sent as their difference from the one before, which is no longer than this.
+#: No step from point to point is longer than this along x or y, so that the difference of two steps fits into a byte.
 LONGEST = 60
 
 
 def told(lines: Lines, choice: LineChoice) -> tuple[Ints, Ints]:
-    """The lines that are drawn at any size, dark ones first, and the step of the ladder at which each enters."""
+    """The lines that are drawn at some size, dark ones first, and the step of the ladder at which each enters."""
     which: list[Ints] = []
     steps: list[Ints] = []
     for kind, white in ((choice, False), (WHITE, True)):
@@ -42,16 +43,18 @@ def told(lines: Lines, choice: LineChoice) -> tuple[Ints, Ints]:
 
 
 def grid(lines: Lines) -> tuple[int, int]:
-    """How many places there are across the frame, and down it."""
+    """How many places the grid has across the frame, and down it."""
     root = math.sqrt(lines.width * lines.height)
     across, down = (min(max(1, math.floor(SIDE * side / root + 0.5)), MOST) for side in (lines.width, lines.height))
     return across, down
 
 
 def line_bytes(lines: Lines, which: Ints, steps: Ints) -> bytes:
-    """Each line: its step, its breadth in half places (2 bytes), how many points (2 bytes), the first, steps, weights.
+    """The bytes of the lines `which` (n,), one after another; steps: (n,) of the ladder.
 
-    A step is two bytes, the difference from the step before it plus 128, along x and along y.
+    Each line is its step of the ladder (1 byte), its breadth in half places (2 bytes), the number of its points (2
+    bytes), the first point (2 bytes for x and y each), steps and weights. A step is two bytes, along x and along y: the
+    difference from the step before it, plus 128.
     """
     across, down = grid(lines)
     scale = np.array([across / lines.width, down / lines.height])
@@ -71,7 +74,7 @@ def line_bytes(lines: Lines, which: Ints, steps: Ints) -> bytes:
 
 
 def _path(points: Floats, weight: Floats) -> tuple[Ints, Ints]:
-    """Places (k, 2) along a path, no two alike in a row and none too far from the last, and the weight at each."""
+    """Places (k, 2) along a path, no two in a row alike, none too far from the one before, and the weights (k,)."""
     legs = points[1:] - points[:-1]
     parts = np.maximum(np.ceil(np.abs(legs).max(axis=1, initial=0) / LONGEST), 1).astype(np.int64)
     leg = np.repeat(np.arange(len(parts)), parts)

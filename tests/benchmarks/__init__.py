@@ -1,0 +1,1 @@
+"""Measurements. Each module prints figures of one subject; its first line says of which."""

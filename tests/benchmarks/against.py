@@ -1,8 +1,9 @@
 """Each filter by this checkout and by an older one: ``python -m tests.benchmarks.against CHECKOUT [NAME …]``.
 
-CHECKOUT is another worktree whose kernels this interpreter has built. Both do the same with the same files, in turn, so
-that a machine's other work slows both: the median of each one's processor time, starting Python included, and this
-one's share of the older one's. NAMEs are those of the table's first column. For `draw`: `draw against`.
+CHECKOUT is another worktree whose kernels this interpreter has built. Both checkouts do the same with the same files,
+in turn, so that a machine's other work slows both. Printed are the median of each one's processor time, starting Python
+included, and this one's in parts of the older one's. NAMEs are those of the table's first column. `draw` is measured so
+by `python -m tests.benchmarks.draw against`.
 """
 
 from __future__ import annotations
@@ -14,8 +15,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-HERE = Path(__file__).parents[2]
-TURNS = 7  # of either checkout, after one that fills the caches
+from tests.benchmarks._turns import in_turn, older_checkout
 
 CALLS = {
     "enlarge": "enlarge -e e.json --scale 4 samples.pgm -o out",
@@ -41,7 +41,7 @@ INPUTS = (
 
 
 def ran(checkout: Path, call: str, folder: Path) -> float:
-    """Seconds of processor."""
+    """Seconds of processor that a call of penink takes by the package of a checkout."""
     environment = {**os.environ, "PYTHONPATH": str(checkout)}
     process = subprocess.Popen(
         [sys.executable, "-m", "penink_cli", *call.split()], cwd=folder, env=environment, stderr=subprocess.PIPE
@@ -60,28 +60,22 @@ def main() -> None:
     from PIL import Image
 
     told = sys.argv[1:]
-    if not told or not (Path(told[0]) / "penink_cli").is_dir():
-        sys.exit("against what? a checkout, built, is wanted first")
-    older = Path(told[0]).resolve()
+    older = older_checkout(told)
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         face = Image.fromarray(skimage.data.astronaut()).convert("L")
         face.resize((768, 768), Image.Resampling.BICUBIC).save(folder / "photo.pgm")
         for call in INPUTS:
-            ran(older, call, folder)  # what the older one writes both can read
+            ran(older, call, folder)  # both checkouts can read what the older one writes
         print(f"{'':<18}{'older s':>9}{'this s':>9}{'this by older':>15}")
         for what in told[1:] or CALLS:
-            times: dict[Path, list[float]] = {older: [], HERE: []}
-            results = {}
-            for turn in range(TURNS + 1):
-                for checkout, took in times.items():
-                    one = ran(checkout, CALLS[what], folder)
-                    results[checkout] = (folder / "out").read_bytes()
-                    if turn:
-                        took.append(one)
-            old, new = (statistics.median(took) for took in times.values())
-            same = "" if results[older] == results[HERE] else "  other bytes"
-            print(f"{what:<18}{old:9.3f}{new:9.3f}{new / old:15.3f}{same}", flush=True)
+
+            def once(checkout: Path, call: str = CALLS[what]) -> tuple[float, bytes]:
+                return ran(checkout, call, folder), (folder / "out").read_bytes()
+
+            *taken, same = in_turn(older, once)
+            old, new = map(statistics.median, taken)
+            print(f"{what:<18}{old:9.3f}{new:9.3f}{new / old:15.3f}{'' if same else '  other bytes'}", flush=True)
 
 
 if __name__ == "__main__":

@@ -2,8 +2,8 @@
 
 sizes        bytes of `draw -o x.penink` of half a megapixel, by members, encoding and decoding; without directions
              and lines in the style `true`
-similarity   `render` at 6 in of that archive, and of one with all edges, the grid of RMS 8 and 64 levels as archives
-             had before, against the photograph (`detail` and `telling` of tests.benchmarks.drawing)
+similarity   `render` at 6 in of that archive, and of one with all edges, a grid of RMS 8 and 64 levels, against the
+             photograph (`detail` and `telling` of tests.benchmarks.drawing)
 wall         brick from natural 4 in at 2, 4, 8, 16 in: courses, tone, time beside crosshatch
 """
 
@@ -90,8 +90,8 @@ def sizes(names: list[str], folder: Path) -> None:
     print(f"| mean | {' | '.join(mean[:5])} | | | | {mean[5]} |")
 
 
-def before(name: str, folder: Path) -> Path:
-    """The archive of the same photograph as it was: all edges and lines, RMS 8, 64 levels, a field of 96 samples."""
+def not_thinned(name: str, folder: Path) -> Path:
+    """An archive of the same photograph that is not thinned: all edges and lines, RMS 8, 64 levels, 96 directions."""
     photo, f = (
         photograph(name, folder),
         {k: folder / k for k in ("g.pgm", "e.json", "l.json", "d.pgm", "s.pgm", "r.pgm")},
@@ -111,17 +111,17 @@ def before(name: str, folder: Path) -> Path:
         "lines": "l.json",
         "levels": 64,
     }
-    path = folder / "before.illustration.json"
+    path = folder / "all.illustration.json"
     path.write_text(json.dumps(now | {"layers": [layer]}))
     return path
 
 
 def similarity(names: list[str], folder: Path) -> None:
-    print("drawings at 6 in against the photograph: detail / telling of the archive, of one as before, difference")
+    print("drawings at 6 in against the photograph: detail / telling of the archive, of one not thinned, difference")
     rows = []
     for name in names:
         measured = []
-        for path in (drawn(name, folder), before(name, folder)):
+        for path in (drawn(name, folder), not_thinned(name, folder)):
             penink("render", path, "--width", "6in", "--device-dpi", "none", "-o", folder / "s.jsonl")
             penink("to-png", folder / "s.jsonl", "-o", folder / "s.png")
             found = seen(folder / "s.png", folder / f"{name}.png")
@@ -133,7 +133,7 @@ def similarity(names: list[str], folder: Path) -> None:
 
 
 def repeats(profile: np.ndarray) -> int:
-    """The first lag at which a profile is half as much like itself again as it ever is."""
+    """The first lag at which a profile's correlation with itself peaks at more than half of its highest peak."""
     flat = gaussian_filter1d(profile, 2) - gaussian_filter1d(profile, 120)
     like = np.array([1.0, *(np.mean(flat[k:] * flat[:-k]) / np.mean(flat * flat) for k in range(1, len(flat) // 2))])
     peaks = [k for k in range(24, len(like) - 9) if like[k] == like[k - 8 : k + 9].max()]

@@ -1,4 +1,4 @@
-"""What blasting is judged by: tone, evenness, crispness, speed. ``python -m tests.benchmarks.blasting [TABLE]...``
+"""Blasting measured: tone, evenness, crispness, speed. ``python -m tests.benchmarks.blasting [TABLE]...``
 
 Tables: tone strict textures light devices pens long evenness disc speed threads poster, each within two minutes or so,
 textures within five. All need Ghostscript but the last three.

@@ -1,12 +1,12 @@
 """Small things drawn as themselves: ``python -m tests.benchmarks.discs [TEXTURE …]``, all textures unless told.
 
-Discs of 2 to 12 points, black on white and white in black, by every rule that the texture can be drawn by, for a
-screen and for a printer of 600 dpi, as that prints them. A row each; a figure a diameter:
+Discs of 2 to 12 points, black on white and white in black, by every rule that can draw the texture, for a screen and
+as a printer of 600 dpi prints them. A row has a figure for each diameter:
 
     black    tone inside the black disc: at least .75, .6 at 2 pt
     stray    ink further than a point outside it, in % of the disc: at most 10
     white    paper inside the white disc: at least .75, .6 at 2 pt
-    around   tone from one to four points beside that: what the texture has for black
+    around   tone from one to four points beside the white disc: what the texture has for black
 
 Then lettering of 9 and 7 points, drawn 4 in wide by all of `draw`: tone inside, and ink further than a point outside,
 at most 2 % of all. ``lettering`` in place of textures is that alone.

@@ -3,15 +3,15 @@
 Run as ``python -m tests.benchmarks.draw [stages] [watch] [against CHECKOUT] [half|two|twelve …] [true|house …]``. A
 portrait with a camera's grain, as a JPEG of half a megapixel, two and twelve, is drawn 6 in wide. Times are of the
 processor, all threads together; Canny's detector of scikit-image (sigma 2) on the same photograph in the same run is
-the unit beside them. What each filter takes of the processor is told of one thread, for with more of them filters run
-at the same time; of more it is told when each began and ended on the wall.
+the unit beside them. The processor's time of each filter is told for one thread, for with more threads filters run at
+the same time; for more threads it is told when each filter began and ended on the wall.
 
-`watch`: seconds from the saving of a style or of somebody's strokes to the drawing's being there again, while
-``draw --watch`` follows them: on the wall, so on a quiet machine alone; and of the processor.
+`watch`: seconds from the saving of a style, or of the user's strokes, until ``draw --watch`` has drawn again: on the
+wall, which tells something on a quiet machine alone, and of the processor.
 
 `against`: the same drawings by this checkout and by an older one that is built, in turn and several times, so that a
-machine's other work slows both: medians, and this one's share of the older one's, filter by filter where one thread
-draws, and the whole where all do.
+machine's other work slows both: medians, and this one's in parts of the older one's, filter by filter where one thread
+draws, and the whole where all threads do.
 """
 
 import json
@@ -25,13 +25,12 @@ from pathlib import Path
 
 SIZES = {"half": (900, 600), "two": (1732, 1155), "twelve": (4242, 2828)}
 HERE = Path(__file__).parents[2]
-TURNS = 7  # of either checkout, after one that fills the caches
 DRAWINGS = (("true", ".ps"), ("house", ".ps"), ("house", ".penink"))
 
 
 def portrait(path, size):
     """A JPEG photograph of that size."""
-    # here, for a call of `draw` that is timed pays for no import of ours
+    # imported here, so that a call of `draw` that is timed does not pay for it
     import numpy as np
     import skimage.data
     from PIL import Image
@@ -61,7 +60,7 @@ def child():
 
     spent: seconds of processor by filter, start-up and the rest beside them. spans: when each began and ended, seconds.
     """
-    from penink_cli.__main__ import main as penink  # as it is called, with what it sets before anything else
+    from penink_cli.__main__ import main as penink  # the entry point, which sets some things before anything else
     from penink_cli.chain import filters
 
     spent, spans = {"start": time.process_time()}, []
@@ -90,7 +89,7 @@ def child():
 
 
 def peak():
-    """MB that this process has had at the most; what getrusage says may be those of the process that started it."""
+    """The most MB that this process has had; the figure of getrusage may be that of the process that started it."""
     text = Path("/proc/self/status").read_text()
     return int(text.split("VmHWM:")[1].split()[0]) / 1024
 
@@ -128,33 +127,24 @@ def stages(folder, sizes, drawings):
 
 def against(folder, sizes, drawings, older):
     """This checkout beside an older one, in turn."""
+    from tests.benchmarks._turns import in_turn  # not at the top: a child that is timed runs this file alone
+
     for size in sizes:
         photo = folder / f"{size}.jpg"
         portrait(photo, SIZES[size])
         for style, ending in drawings:
-            options = ["--style", style, "--width", "6in"]
-            ways = {"all threads": [], "one thread": ["--threads=1"]}
-            runs, bytes_of = {(checkout, way): [] for checkout in (older, HERE) for way in ways}, {}
-            for turn in range(TURNS + 1):
-                for (checkout, way), took in runs.items():
-                    told = [*options, *ways[way]]
-                    one, bytes_of[checkout] = drawn(photo, folder / f"d{ending}", *told, checkout=checkout)
-                    if turn:
-                        took.append(one)
-            print(f"{SIZES[size][0]} x {SIZES[size][1]} pixels, {style} {ending}: older, this, this by older;",
-                  "the same bytes" if bytes_of[HERE] == bytes_of[older] else "OTHER BYTES")  # fmt: skip
-            for way in ways:
-                print(f"  {way}")
-                filters = runs[HERE, way][0]["spent"] if way == "one thread" else ()
-                for name in ("total", "wall", "MB", *filters):
-                    old, new = (
-                        statistics.median(_figure(one, name) for one in runs[checkout, way])
-                        for checkout in (older, HERE)
-                    )
+            print(f"{SIZES[size][0]} x {SIZES[size][1]} pixels, {style} {ending}: older, this, this by older")
+            for way, threads in (("all threads", []), ("one thread", ["--threads=1"])):
+                call = photo, folder / f"d{ending}", "--style", style, "--width", "6in", *threads
+                *runs, same = in_turn(older, lambda checkout, call=call: drawn(*call, checkout=checkout))
+                print(f"  {way}; {'the same bytes' if same else 'OTHER BYTES'}")
+                for name in ("total", "wall", "MB", *(runs[1][0]["spent"] if threads else ())):
+                    old, new = (statistics.median(_figure(one, name) for one in took) for took in runs)
                     print(f"    {name:<18}{old:8.3f}{new:8.3f}" + (f"{new / old:7.2f}" if old else ""), flush=True)
 
 
 def _figure(took, name):
+    """One figure of those that a call took, 0 for a filter that it has not run."""
     return took[name] if name in took else took["spent"].get(name, 0.0)
 
 
@@ -220,10 +210,9 @@ def main():
     told = sys.argv[1:]
     older = None
     if "against" in told:
-        at = told.index("against") + 1
-        if at == len(told) or not (Path(told[at]) / "penink_cli").is_dir():
-            sys.exit("against what? a checkout, built, is wanted after it")
-        older = Path(told[at]).resolve()
+        from tests.benchmarks._turns import older_checkout
+
+        older = older_checkout(told[told.index("against") + 1 :])
     with tempfile.TemporaryDirectory() as name:
         sizes = [size for size in SIZES if size in told] or list(SIZES)
         drawings = [drawing for drawing in DRAWINGS if drawing[0] in told] or DRAWINGS

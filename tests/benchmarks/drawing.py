@@ -1,4 +1,4 @@
-"""What drawings show of the sample photographs, style by style, how true their tone is, and one at many sizes.
+"""How much drawings show of the sample photographs, style by style; how true their tone is; one drawing at many sizes.
 
 Run as ``python -m tests.benchmarks.drawing [detail] [tone] [sizes] [swelling] [STYLE …]``: all parts and styles, or
 those named. `detail`: a row a style, means and each picture. Drawing and photograph are both seen in a band between

@@ -1,8 +1,8 @@
 """What the two edge indexes beside `geometry.edge_index` are worth: `python -m tests.benchmarks.edge_index`.
 
-The reconstruction's lists an edge in the cells that it touches, and not in all of its bounding box; what that saves is
-told by the edges that a look into a cell meets, and what it costs by the time to build it. The arrangement's takes
-edges in and out; the common index would be built anew for each.
+The reconstruction's index lists an edge in the cells that it touches, and not in all cells of its bounding box. Its
+gain is the fewer edges that a look into a cell meets, its cost the time to build it. The arrangement's takes edges in
+and out; the common index would be built anew for each.
 """
 
 from __future__ import annotations

@@ -68,7 +68,7 @@ def along(edges: EdgeList, step: float = 0.1) -> np.ndarray:
 
 
 def positions(scenes: int) -> None:
-    """Must show 1."""
+    """Positions of edges on rendered scenes."""
     position_rows(range(scenes))
 
 
@@ -107,7 +107,7 @@ def psnr(a: np.ndarray, b: np.ndarray, where: np.ndarray) -> float:
 
 
 def best_plain(photo: np.ndarray, width: int, height: int, truth: np.ndarray, where: np.ndarray) -> float:
-    """The best of Pillow's filters down and up again, its samples of 8 bits as ours are."""
+    """The best PSNR of Pillow's filters down and up again, with samples of 8 bits as the reconstruction has them."""
     picture = Image.fromarray(photo.astype(np.float32))
     small = [np.round(np.asarray(picture.resize((width, height), d)) * 255) / 255 for d in DOWN]
     again = [Image.fromarray(s.astype(np.float32)).resize(picture.size, u) for s in small for u in UP]
@@ -154,7 +154,7 @@ def trip_rows(photographs: dict[str, str]) -> None:
 
 
 def held_out() -> None:
-    """Must show 2 and 3 again on photographs, and 1 on scenes, that nothing was tuned to."""
+    """Round trips of photographs, and positions on scenes, by which no constant was chosen."""
     print("\nheld out: reduced 4 x and enlarged again, gain over the best plain resampling, dB, near edges (elsewhere)")
     trip_rows(dict.fromkeys(HELD_OUT, ""))
     print()
@@ -162,7 +162,7 @@ def held_out() -> None:
 
 
 def round_trips(scenes: int) -> None:
-    """Must show 2 and 3."""
+    """Round trips of photographs, and of rendered scenes against their sharp truth."""
     print("\nreduced 4 x and enlarged again, gain over the best plain resampling, dB, within 3 px of edges (elsewhere)")
     trip_rows({name: f"{wanted:+.1f}" for name, wanted in PHOTOS.items()})
     print("rendered scenes, against the sharp truth")
@@ -184,10 +184,11 @@ def round_trips(scenes: int) -> None:
 
 
 def storage() -> None:
-    """Must show 4.
+    """The grid that --auto chooses, bytes of the illustration packed, and of its PostScript.
 
-    PostScript is measured twice: ours, which is compact, and what plain path operators take, as in the paper's time.
-    Dots do not end at edges, so there are sixteen times as many in 24 inches as in 6; the first photograph shows it.
+    PostScript is measured twice: as `to-ps` writes it, which is compact, and with plain path operators, as in the
+    paper's time. Dots do not end at edges, so 24 inches have sixteen times as many as 6; the first photograph shows
+    that.
     """
     print("\n--auto --max-error 8: the grid, and the illustration packed")
     print("its PostScript at 24 in, as to-ps writes it and as moveto, lineto, curveto and stroke with two decimals")
@@ -217,8 +218,8 @@ def storage() -> None:
             drawings["stipple"] = _paper(samples, edges, "stipple", 24)
         for texture, (compact, plain) in drawings.items():
             print(
-                f"{'':10s} {texture}: {compact / 1e6:.1f} MB = {compact / packed:.0f} x,"
-                f" plain {plain / 1e6:.1f} MB = {plain / packed:.0f} x",
+                f"{'':10s} {texture}: {compact / 1e6:.1f} MB = {compact / len(packed):.0f} x,"
+                f" plain {plain / 1e6:.1f} MB = {plain / len(packed):.0f} x",
                 flush=True,
             )
 
@@ -268,7 +269,7 @@ def _straight(a: list[float], b: list[float], c: list[float]) -> bool:
 
 
 def large() -> None:
-    """Must show 5: a photograph with noise, then what is all edges or all texture; time by the pixel at two sizes."""
+    """Twelve megapixels: a photograph with noise, one that is all edges, one that is all texture; time by the pixel."""
     random = np.random.default_rng(0)
     base = Image.fromarray(np.uint8(photograph("astronaut") * 255)).resize((4000, 4000), Image.Resampling.BICUBIC)
     mosaic = np.kron(random.integers(0, 256, (600, 800)), np.ones((5, 5))).astype(np.uint8)
@@ -331,7 +332,7 @@ def _filters(pixels: np.ndarray, folder: str) -> dict[str, tuple[float, float, f
 
 
 def hostile(count: int) -> None:
-    """Must show 6."""
+    """Hostile pictures: whatever the detector finds in them must be an arrangement."""
     random = np.random.default_rng(1)
     photos = [photograph(name) for name in PHOTOS]
     edge_count = 0
@@ -368,13 +369,14 @@ def hostile(count: int) -> None:
 def strengths(scenes: int) -> None:
     """How far strengths are from the scene's own step, on rendered scenes; and what no measure could tell better.
 
-    The truth is the step of the noiseless scene at the outline nearest to the middle of each edge, within a pixel.
-    "samples" is the difference of clean samples 1½ pixels to either side of the middle. "spread" is the truth's own: on
-    how many edges the scene's greys ½, 1 or 1½ pixels to both sides of the middle differ by more than .02 from what the
-    nearest outline has. That is so near junctions, where one edge is nearest to another's outline. "unblamed" are those
-    as told that are off where the truth has no such spread. "noise" is on how many a photo of the same scene with other
-    noise gives the same edge a strength that differs by more than .02. The last two are off without noise: "noiseless"
-    on the same blurred photo, "sharp" on one that has no blur but its pixels'. What they have is in the edges.
+    The truth is the step of the noiseless scene at the outline nearest to the middle of each edge, within a pixel. "as
+    told" are the detector's strengths, "samples" the difference of clean samples 1½ pixels to either side of the
+    middle. The other columns are parts of the edges. "spread": the truth itself is unsure, for the scene's greys ½, 1
+    or 1½ pixels to both sides of the middle differ by more than .02 from the step of the nearest outline; that is so
+    near junctions, where one edge is nearest to another's outline. "unblamed": strengths as told that are off where the
+    truth has no such spread. "noise": a photo of the same scene with other noise gives the edge a strength that differs
+    by more than .02. "noiseless" and "sharp": strengths of the same edges that are off on the same blurred photo
+    without noise, and on one without noise or blur; their error lies in the edges.
     """
     print("strengths: part of the edges off by more than .02, the median and 95 % of how far off")
     print("blur noise  edges       as told                samples           spread unblamed  noise noiseless sharp")
@@ -416,8 +418,8 @@ WAYS: dict[str, dict[str, object]] = {
 def noisy() -> None:
     """What averaging does to strengths on photographs: at half size, noise added that was not there.
 
-    Off from what the near pixels tell without the noise. A longer reach alone would average more noise out on scenes of
-    planes; on photographs it reads other things.
+    Errors are from the strengths that near pixels tell without the noise. A longer reach alone would average out more
+    noise on scenes of planes; on photographs it reaches other things.
     """
     print("noisy: part of the edges off by more than .02, and by how much, RMS")
     print("photograph   noise  " + "".join(f"{way:>19}" for way in WAYS))
@@ -445,7 +447,7 @@ def direct_steps(scene: Scene, edges: EdgeList, off: float) -> np.ndarray:
 
 
 def measured(photo: np.ndarray, edges: EdgeList, lens: float, **way: object) -> np.ndarray:
-    """Strengths (m,) of given edges. way: constants of strengths.py that are to be other ones."""
+    """Strengths (m,) of given edges. way: constants of strengths.py, by name, that are to have other values."""
     with mock.patch.multiple(steps, **{"_ALIKE": steps._ALIKE, **way}):
         return steps.strengths(photo, edges, lens, noise_level(photo))
 

@@ -1,7 +1,7 @@
-"""What hatching along the form is judged by. ``python -m tests.benchmarks.form [TABLE]...``
+"""Hatching along the form measured. ``python -m tests.benchmarks.form [TABLE]...``
 
 Tables: fields constant tone pens lengths bytes speed poster; beside each figure stands what is held to be good enough.
-Those of fields, constant and lengths know only the strokes; tone and pens need Ghostscript.
+Fields, constant and lengths look at the strokes alone; tone and pens need Ghostscript.
 """
 
 from __future__ import annotations
@@ -125,7 +125,7 @@ def pens() -> None:
 
 
 def lengths() -> None:
-    """Of hatching; what fills black is no hatching."""
+    """Mean lengths of the strokes of hatching, without those that fill black."""
     print("mean length, pt, 6 in: crosshatch straight  along  form straight  along  (within a tenth)")
     for name in PHOTOS:
         means = []

@@ -1,7 +1,7 @@
 """Figures of the outputs: agreement of renderers, bytes, place and size, plotters, start-up.
 
 Run as ``python -m tests.benchmarks.outputs [PART ...]``; parts are renderers, size, inclusion, plotters, startup.
-Programs that are not installed are named and left out. vpype, whose dependencies are many, gets a virtual
+Programs that are not installed are named and left out. vpype, which has many dependencies, is installed into a virtual
 environment of its own in build/vpype, unless VPYPE names a Python that has it.
 """
 

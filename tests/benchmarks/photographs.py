@@ -1,4 +1,4 @@
-"""Photographs with something the matter, and mutated ones: ``python -m tests.benchmarks.photographs [N | --cases]``.
+"""Photographs with a fault, and mutated ones: ``python -m tests.benchmarks.photographs [N | --cases]``.
 
 ``--cases`` prints a table: each input of tests/formats/photo_cases.py, what it should give, what it gives. A number
 mutates that many photographs of every kind (10 000 unless told otherwise), a few bytes each, and reads them with each

@@ -2,14 +2,17 @@
 
 Every plate is separated, blasted and drawn into pixels: each for itself, then drawn anew by corrected tones, then
 pressed with the others. The plates are printed over one another as transparent inks and looked at from afar: light is
-low-passed by σ = 1/16 in, and compared with the photograph's in CIEDE2000. Beside it a clustered-dot halftone of the
-same inks in the same amounts (60 lines an inch at 600 dpi, 15°, 75°, 0° and 45°), calibrated, printed and looked at
-alike, and the plates' own amounts, which neither can surpass but by chance. Where the inks hold all colours of a
-photograph these come within .2 of it, which dots do not: of three inks error diffusion is printed too (Floyd and
-Steinberg), dots of the size of the finest pen, and of half that. What is off of the latter is the floor that plates of
-strokes are held against besides: on coffee and chelsea they are below it (.79 and .66 of it, 1.56 and 1.54 of the
-amounts; forty rounds of pressing, by up to .6 of a width, end at 1.45 and 1.41; one pen of .45 pt at 1.84 and 1.61, of
-.3 pt at 2.05 and 1.57; plates of dots at 2.24 and 1.34 on coffee and rocket, of engraved lines at 2.47 and 2.22).
+low-passed by σ = 1/16 in, and compared with the photograph's in CIEDE2000.
+
+Beside them are measured a clustered-dot halftone of the same inks in the same amounts (60 lines an inch at 600 dpi,
+15°, 75°, 0° and 45°), calibrated, printed and looked at alike, and the amounts themselves, which neither can surpass
+but by chance. Where the inks hold all colours of a photograph, the amounts come within .2 of it, which dots do not. So
+three inks are also printed by error diffusion (Floyd and Steinberg), in dots of the size of the finest pen, and of half
+that. The error of the latter is a floor for plates of strokes.
+
+On coffee and chelsea plates are below the floor: .79 and .66 of it, 1.56 and 1.54 of the amounts. What else was tried,
+in parts of the amounts: forty rounds of pressing, by up to .6 of a width, 1.45 and 1.41; one pen of .45 pt, 1.84 and
+1.61, of .3 pt, 2.05 and 1.57; on coffee and rocket plates of dots, 2.24 and 1.34, of engraved lines, 2.47 and 2.22.
 
 lightness: the mean of L* less the photograph's. moiré: how much of the contrast of the overprint, beyond what is in the
 photograph, lies in periods of 1/10 to 1/3 in, in L*.

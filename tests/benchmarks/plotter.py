@@ -1,7 +1,7 @@
-"""What plotters make of our SVG: ``python -m tests.benchmarks.plotter [saxi=FOLDER] [vpype=PROGRAM]``.
+"""What plotters make of penink's SVG: ``python -m tests.benchmarks.plotter [saxi=FOLDER] [vpype=PROGRAM]``.
 
 saxi: the folder of the npm package saxi, whose own planner (run by node) times the same strokes for an AxiDraw. vpype:
-the program; strokes, lengths and HPGL are counted, by readers of our own, as they come and with --merge.
+the program; it counts strokes, their length and those of its HPGL, of plain files and of files with --merge.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ console.log(plan(paths, AxidrawFast).duration());
 
 
 def drawings() -> dict[str, Strokes]:
-    """Of 2 in each."""
+    """Drawings of 2 in, by what they are."""
     y, x = (np.mgrid[0:288, 0:288] + 0.5) / 288
     tone = 0.1 + 0.5 * x
     rings = np.arctan2(x - 0.5, 0.5 - y)

@@ -40,7 +40,7 @@ def by_chromium(page: Path, sheet: tuple[float, float]) -> bytes:
 
 
 class Firefox:
-    """One of its own, without a screen."""
+    """A Firefox with a profile of its own and without a screen."""
 
     def __init__(self, program: str):
         self.profile = tempfile.mkdtemp(prefix="penink-firefox-")

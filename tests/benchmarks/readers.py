@@ -1,11 +1,11 @@
-"""What readers make of our SVG: ``python -m tests.benchmarks.readers [vpype=PYTHON] [saxi=FOLDER] [axidraw=PYTHON]``.
+"""How readers read penink's SVG: ``python -m tests.benchmarks.readers [vpype=PYTHON] [saxi=FOLDER] [axidraw=PYTHON]``.
 
-Three files of one picture in two inks: to-svg's, the same merged, and the one that the page saves. Each reader counts
-layers, strokes and colours and adds up lengths; the first line is by a reader of our own, svgelements. What differs is
-marked, and ends the run with status 1.
+Three files of one picture in two inks: that of to-svg, the same merged, and the one that the page saves. Each reader
+counts layers, strokes and colours and adds up lengths; the first line is what svgelements reads. Differences are
+marked, and end the run with status 1.
 
-vpype: a Python that has it. saxi: the folder of the npm package, whose flattener is run on a page, as saxi's own does.
-(Its command line takes the sheet's millimetres for pixels; it scales to the paper unless told otherwise.) axidraw: a
+vpype: a Python that has it. saxi: the folder of the npm package, whose flattener is run on a page, as saxi does. (Its
+command line takes the sheet's millimetres for pixels; it scales to the paper unless told otherwise.) axidraw: a
 Python that has plotink and ink_extensions, with which the AxiDraw's own program reads.
 """
 

@@ -1,7 +1,7 @@
 """Snakemake and make over one small folder of photographs: the same files, byte by byte.
 
-Run as ``python -m tests.benchmarks.workflow``. Snakemake's dependencies are many, so it gets a virtual environment of
-its own in build/snakemake, unless SNAKEMAKE names the program.
+Run as ``python -m tests.benchmarks.workflow``. Snakemake has many dependencies, so it is installed into a virtual
+environment of its own in build/snakemake, unless SNAKEMAKE names the program.
 """
 
 import os

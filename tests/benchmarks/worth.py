@@ -1,6 +1,6 @@
 """What each piece of machinery gains: ``python -m tests.benchmarks.worth [vectors junctions tours coder codes]``.
 
-Each says at its top what this command prints; what gains nothing is to go. All times are of the processor.
+Each piece says at its top what this command prints; one that gains nothing is to go. All times are of the processor.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from tests.benchmarks.reconstruction import arcs, noise, scattered
 
 
 def spent(task: Callable[[], object]) -> tuple[float, object]:
-    """Seconds of the processor, and what comes of it."""
+    """Seconds of the processor that a task takes, and its result."""
     start = time.process_time()
     result = task()
     return time.process_time() - start, result

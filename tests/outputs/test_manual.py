@@ -115,6 +115,14 @@ def test_a_man_page_holds_the_whole_help():
     assert all(ord(c) < 128 for c in page)
 
 
+def test_a_man_page_names_every_variable_of_the_environment_that_the_program_obeys():
+    sources = "\n".join(path.read_text("utf-8") for path in Path(penink_cli.__file__).parent.glob("**/*.py"))
+    read = set(re.findall(r'environ\.get\("(\w+)"\)', sources)) | set(re.findall(r'^VARIABLE = "(\w+)"', sources, re.M))
+    assert len(read) >= 4
+    for name in read - {"TERM"}:  # which is the terminal's
+        assert f"\n.B {name}\n" in manual.man_page(None), name
+
+
 @pytest.mark.parametrize(
     ("words", "expected"),
     [

@@ -46,17 +46,17 @@ class Reader {
     return {xs, ys, ends, outlines};
   }
 
-  // Directions, coded as samples are: pictures of the cosine and the sine of twice the angle, in 127.5ths and 127.5 more.
+  // Directions, coded as samples are: pictures of the cosine and the sine of twice the angle, each as 127.5 (1 + value).
   field(w, h, {picture, xs, ys, ends}) {
     if (!w) return null;
     const angle = this.levels(w, h, ANGLES), part = of => new Picture(w, h, angle.map(k => byte(127.5 + 127.5 * of(2 * Math.PI * k / ANGLES))),
       xs.map(x => (x + 0.5) * w / picture.w - 0.5), ys.map(y => (y + 0.5) * h / picture.h - 0.5), ends);
     const field = {cos: part(Math.cos), sin: part(Math.sin)};
-    for (const half of [field.cos, field.sin]) half.nodesIn = [];           // what an edge hides is not looked for around its end
+    for (const half of [field.cos, field.sin]) half.nodesIn = [];           // no paths around the ends of edges: a field needs none
     return field;
   }
 
-  // Telling lines: step of the ladder, breadth, number of points, the first, differences of steps, weights.
+  // Telling lines: step of the ladder, breadth, number of points, the first point, differences of steps, weights.
   told(dark, white) {
     return Array.from({length: dark + white}, (_, k) => {
       const enters = this.byte(), breadth = this.word(), count = this.word();
@@ -67,8 +67,8 @@ class Reader {
     });
   }
 
-  // Strokes that are not lines: threshold, first point, three steps from there, in quarters of a point; of tiles that grow the span
-  // and a longer threshold.
+  // The strokes of a tile: threshold, first point, three steps from there, in quarters of a point. Those of a tile that grows begin
+  // with their span, and have a longer threshold.
   tile({tile, fresh, covers, whole, widens, strokes: count, grows}) {
     const strokes = [], spans = grows ? [] : null;
     for (let k = 0; k < count; k++) {

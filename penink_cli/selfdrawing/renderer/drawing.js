@@ -1,7 +1,7 @@
 // drawing.js - strokes from tone: each stroke is drawn wherever the tone exceeds its threshold.
 // The same steps as texture.ps and drawing.ps, which say why.
 
-// Blocks around the window that are reconstructed and corrected with it: what lies farther moves no stroke in it visibly.
+// Blocks around the window that are reconstructed and corrected with it: tone that lies farther moves no stroke in it visibly.
 const MARGIN = 4;
 
 // The fresh ink of a point of a stroke that enters where its screen covers so much.
@@ -30,7 +30,7 @@ for (let r = 0; r < 64; r++) {
   there.forEach((k, i) => { WAY[64 * k + r] = (clamp(Math.floor(128.5 + WAY_STEPS * (at[i] - home[i])), 0, 255) - 128) / WAY_STEPS; });
 }
 
-// Strokes lie in one array, so many numbers each: length, the coefficients of cubics in u and v, limit, weight (the ink of a
+// Strokes lie in one array, STROKE numbers each: length, four coefficients of a cubic in u, four in v, limit, weight (the ink of a
 // unit of length), line (-1 for none).
 const STROKE = 12;
 // A table of sines: a call of Math.sin for each sample took half of all the time.
@@ -60,14 +60,14 @@ function lines(number, angle, low, high, wave, turn, widens) {
   return {angle, strokes: Float64Array.from(strokes), level, tile: [ALONG, ACROSS], whole: false, wave, turn, widens};
 }
 
-// The same strokes half a tile away: from tone low on they cover what the screen leaves bare.
+// A screen of the same strokes half a tile away: from tone low on they cover paper that the screen leaves bare.
 function again(screen, low) {
   const move = [0, screen.tile[0] / 2, 0, 0, 0, screen.tile[1] / 2];
   return {...screen, strokes: screen.strokes.map((x, k) => k % STROKE === 9 ? 255 * low + (1 - low) * x : x + (move[k % STROKE] || 0))};
 }
 
-// What all layers share: blocks, so many points of paper square, in which ink is compared with tone, and the part of
-// the picture that matters, in points: the window and what is near it, in whole blocks.
+// The blocks that all layers share: squares of `side` points of paper, in which ink is compared with tone. They cover the part of
+// the picture that matters: the window and a margin around it.
 class Blocks {
   constructor(width, height, window, side) {
     const from = x => Math.max(0, Math.floor(x / side) - MARGIN);
@@ -316,7 +316,7 @@ function point(count, t, steps) {
   return count + 1;
 }
 
-// Gives a layer the pens that suit a picture so wide: of a small one they are finer, though not under so many of the device's dots.
+// Gives a layer the pens that suit a picture of that width: on a small one they are finer, but not finer than PRINT_DOTS dots.
 function suit(layer, width, dot) {
   const {given, pen} = layer, part = clamp(Math.sqrt(width / PRINT_FULL), PRINT_LEAST, 1), finer = wide => Math.min(Math.max(part * wide, PRINT_DOTS * dot), wide);
   layer.magnification = layer.engraving ? given.magnification : (finer(given.magnification * pen - WIDENED) + WIDENED) / pen;
@@ -325,7 +325,7 @@ function suit(layer, width, dot) {
   layer.fine = part;
   if (layer.given.fill.length) grow(layer, Math.max(width / size[0], given.least / Math.min(...layer.tile.tile)));
 }
-// The tile of a layer so many times as large, and lines for the tones that it does not reach.
+// Gives a layer its tile `scale` times as large, and lines for the tones that the tile does not reach.
 function grow(layer, scale) {
   const {tile, given, magnification} = layer, by = scale / magnification, parts = SPAN_PARTS * 1.001 * scale;
   if (layer.grown && layer.grown.scale === scale && layer.grown.by === by) return;
@@ -336,10 +336,10 @@ function grow(layer, scale) {
   layer.grown = {scale, by};
 }
 
-// Draws the layers of a picture of width by height points in a window (x0 y0 x1 y1) of it, for a device that adds so many points
-// (gain) to an upright stroke; `every`: cells of tone a node of the field, 2 in a hurry. Calls stroke(layer, screen, count, pressure)
-// with strokes of hatching, outline(layer, xs, ys, pen) with outlines, in units of the layer, of which a point has `magnification`,
-// and fill(layer, xs, ys) with shapes, in points. dot: the least that the device paints, points.
+// Draws the layers of a picture of width by height points in a window (x0 y0 x1 y1) of it. gain: points that the device adds to an
+// upright stroke. every: cells of tone a node of the field, 2 in a hurry. dot: the least that the device paints, points. Calls
+// stroke(layer, screen, count, pressure) with strokes of hatching and outline(layer, xs, ys, pen) with outlines, both in units of
+// the layer, each `magnification` points, and fill(layer, xs, ys) with shapes, in points.
 function draw(layers, width, height, window, gain, every, stroke, outline, fill, dot = gain) {
   for (const layer of layers) suit(layer, width, dot);
   const blocks = new Blocks(width, height, window, BLOCK * Math.max(...layers.map(layer => layer.magnification)));

@@ -1,8 +1,8 @@
 // engrave.js - lines evenly far apart whose width is the tone (penink_cli/blasting/engraving.py says why; engrave.ps has the
 // same straight lines and rings).
 
-// The middle lines of an engraving where the window needs them: {xs, ys, wide}, wide being how far lines are from one another
-// there, in parts of the spacing. across: those of the second set.
+// The middle lines of an engraving where the window needs them: {xs, ys, wide, odd}. wide: how far lines are from one another at each
+// point, in parts of the spacing. across: the lines of the second set are wanted.
 function tracksOf(sheet, every, across) {
   const {layer, width, height, blocks, unit} = sheet, {engraving, field} = layer, out = [];
   const spacing = engraving.lines ? width / engraving.lines : engraving.spacing;
@@ -58,8 +58,8 @@ function tracksOf(sheet, every, across) {
   return {tracks: out, spacing};
 }
 
-// Lines of a layer: fill(layer, xs, ys) with their outlines, in units. They have the tone by themselves; where there is ink
-// besides, as much is taken from it.
+// Draws the lines of a layer: calls fill(layer, xs, ys) with their outlines, in units. Their width is the tone; where there is other
+// ink, the tone is less by as much.
 function engrave(sheet, every, fill) {
   const {layer, blocks} = sheet;
   if (blocks.bare.some(part => part < 1)) {
@@ -81,14 +81,14 @@ function engrave(sheet, every, fill) {
   }
 }
 
-// The part of a tone that is a set's: above the tone from which on they cross, both grow.
+// The part of a tone that one of two sets of lines makes: above the tone `crosses` both sets grow.
 function partOf(t, crosses, across) {
   if (t <= crosses) return across ? 0 : t;
   const first = crosses + (t - crosses) / 2;
   return across ? 1 - (1 - t) / Math.max(1e-3, 1 - first) : first;
 }
 
-// Where walls cut a line between one point and the next, kept with it.
+// Keeps with a line where walls cut it between one point and the next.
 function cutAtWalls(sheet, track, walls) {
   const {xs, ys} = track;
   track.cuts = new Float32Array(xs.length).fill(-1);
@@ -97,7 +97,7 @@ function cutAtWalls(sheet, track, walls) {
   track.walls = walls;
 }
 
-// The tone that a line makes of what it is asked: in light tones every second one leaves off, and the others do its part.
+// The tone that a line is to make of tone t: in light tones every second line leaves off, and the others do its part.
 function takenUp(t, finest, odd) {
   const [none, all] = LEAVES_OFF, left = clamp((t - none * finest) * all / (all - none), 0, t);
   return t >= all * finest ? t : odd ? left : 2 * t - left;

@@ -1,5 +1,5 @@
 // even.js - the lines of an engraving along a field: ends that face each other are joined, lines moved to the middle between their
-// neighbours. The same steps as joining.py, taking_turns.py and _evened_out of engraving.py in penink_cli/blasting, which say why.
+// neighbours. The same steps as joining.py, taking_turns.py and tracks.py in penink_cli/blasting, which say why.
 
 // Lines [xs, ys] one after another: {x, y, first, ring, line}.
 function inOneRow(lines) {
@@ -21,7 +21,8 @@ function normalsAlong({x, y, line}) {
   return [nx, ny];
 }
 
-// Who finds the lines beside a line: (i, way) => the sample met first from sample i along its normal, or against it; -1 for none.
+// A function that finds lines beside a line: (i, way) => the sample met first from sample i along its normal (way 1) or against it
+// (way -1); -1 for none.
 function lookBeside({x, y, line}, nx, ny, spacing) {
   const count = x.length, cell = CELL_PART * spacing, near = Math.max(3, Math.round(3 * spacing));
   let left = Infinity, top = Infinity, right = -Infinity, bottom = -Infinity;
@@ -83,8 +84,8 @@ function meanAlong(values, {first, line}, reach) {
   return out;
 }
 
-// Lines [xs, ys] with those joined that face each other end to end, as penink_cli/blasting/joining.py has it; `odd` goes with the first. Those
-// are smoothed as evened() does.
+// Lines [xs, ys], those joined that face each other end to end, as penink_cli/blasting/joining.py joins them. A joined line has the `odd`
+// of its first part, and is smoothed as evened() smooths.
 function joinedUp(lines, spacing) {
   const row = inOneRow(lines), {x, y, first, ring, line} = row, nx = new Float64Array(x.length), ny = new Float64Array(x.length), tips = [];
   for (let k = 0; k < lines.length; k++) if (!ring[k] && first[k + 1] - first[k] > 2 * JOIN_BACK) for (const end of [0, 1]) {
@@ -165,9 +166,9 @@ function moveApart(row, spacing, rounds) {
   }
 }
 
-// Lines [xs, ys] moved to about the middle between their neighbours, {xs, ys, wide, odd}, wide being how far apart they are then in
-// parts of the spacing. Ends are prolonged between two lines that close up. Here a phase ends two lines in one place: of those the one that
-// is not odd leaves off sooner, so that what is white beside an end is half as wide.
+// Lines [xs, ys] moved to about the middle between their neighbours: {xs, ys, wide, odd}, wide being how far apart they are then, in
+// parts of the spacing. Ends are prolonged between two lines that draw together. Where the phase ends two lines in one place, the one that
+// is not odd ends sooner, so that the white beside an end is half as wide.
 function evenedOut(lines, spacing, {width, height}) {
   if (!lines.length) return [];
   const inside = (x, y) => x > 2 && y > 2 && x < width - 2 && y < height - 2;
@@ -181,7 +182,7 @@ function evenedOut(lines, spacing, {width, height}) {
   const more = lines.map((_, k) => odd[k] && !ring[k] ? PROLONGED : 0), slice = (row, k, from = row.first[k], upto = row.first[k + 1]) => [row.x.slice(from, upto), row.y.slice(from, upto)];
   let row = inOneRow(lines.map((line, k) => longer(line, more[k])));
   moveApart(row, spacing, EVENINGS);
-  // of what was added that is kept which has room
+  // of the points added those are kept that have room
   const {apart, both} = distancesOf(row, spacing), room = i => both[i] && apart[i] > ROOM * spacing;
   lines = lines.map((_, k) => {
     let from = row.first[k] + more[k], upto = row.first[k + 1] - more[k];

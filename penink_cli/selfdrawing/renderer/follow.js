@@ -1,7 +1,7 @@
-// follow.js - hatching along a field of directions. The same steps as penink_cli/blasting/form.py and shares.py, but tone is
-// made true at the end by the pen's pressure, where those lay all lines anew.
+// follow.js - hatching along a field of directions. The same steps as penink_cli/blasting/form.py and shares.py, which lay all lines
+// anew to make tone true; here the pen's pressure does at the end.
 
-// How much each layer, [turn, low, high], covers for a tone 0 .. 1 that has room for strokes of it.
+// How much of the paper each layer, [turn, low, high], is to cover for a tone 0 .. 1.
 function sharesOf(tone, layers) {
   const out = [];
   let bare = 1, before = 0, here = tone > layers[0][1];
@@ -115,13 +115,13 @@ function weakOf(sheet, {i0, j0, every, columns, rows}, walls) {
   return weak;
 }
 
-// Lines of that density (a unit) along the field, for each level of the phase: [xs, ys] each, in steps of about a unit. What is known of the phase from
-// before is kept, as long as the picture is as large.
+// Lines of that density (a unit) along the field, for each level of the phase: [xs, ys] each, in steps of about a unit. The phase found
+// before is kept as long as the picture is as large.
 function linesAlong(sheet, number, turn, density, wanted, every, walls, spacing, levels = [0]) {
   const grid = nodesOf(sheet, every), [nx, ny] = normalsOf(sheet, grid, turn), dense = pick(sheet, grid, density), {layer, n, m} = sheet;
   if (!layer.phases || layer.phases.n !== n || layer.phases.m !== m) layer.phases = {n, m, known: []};
   const psi = phaseOf(grid, nx, ny, dense, weakOf(sheet, grid, walls), layer.phases.known[number]);
-  // near the window's border it is not settled
+  // near the window's border the phase is not settled
   const rim = Math.ceil(12 / every), {columns, rows, i0, j0} = grid;
   layer.phases.known[number] = {
     psi, i0, j0, every, columns, left: i0 > every ? rim : 0, top: j0 > every ? rim : 0,
@@ -131,7 +131,7 @@ function linesAlong(sheet, number, turn, density, wanted, every, walls, spacing,
   return levels.map(level => evened(levelLines(grid, psi, nx, ny, dense, there, level), rounds, 2).map(line => prolonged(line, sheet)));
 }
 
-// Lines that end at the frame's nodes, half a cell within it, go on beyond it.
+// Lines that end at the outermost nodes, half a cell within the frame, go on beyond it.
 function prolonged(line, {width, height}) {
   const [xs, ys] = line, n = xs.length, near = k => xs[k] < 1.5 || ys[k] < 1.5 || xs[k] > width - 1.5 || ys[k] > height - 1.5, begins = near(0), ends = near(n - 1);
   if (xs[0] === xs[n - 1] && ys[0] === ys[n - 1] || !begins && !ends) return line;
@@ -161,7 +161,7 @@ function wallBetween({layer: {picture}, width, height}, walls, x, y, u, v) {
   return best > 1 ? -1 : best;
 }
 
-// How much each screen covers in each cell of the sheet: the first closes up where it is black, and the others end there.
+// How much each screen covers in each cell of the sheet: where the picture is black the first closes up, and the others end.
 function coversOf(sheet) {
   const {tone, wide, layer: {form, black}} = sheet;
   const hatched = black < 1 ? form.slice(0, -1) : form, table = hatched.map(() => new Float32Array(256));
@@ -187,8 +187,7 @@ function coversOf(sheet) {
   return out;
 }
 
-// Where next to nothing is covered lines run on as dense as around, seen over 4 x 4 cells: they would turn aside if they ended
-// in nothing.
+// Where next to nothing is covered, the density around, over 4 x 4 cells, is carried on: lines would turn aside where it fell to nothing.
 function carriedOn(density, cover, wide, reach) {
   const tall = cover.length / wide, across = wide + 3 >> 2, down = tall + 3 >> 2;
   let known = new Float32Array(across * down), thick = new Float32Array(across * down);
@@ -265,7 +264,7 @@ function follow(sheet, every, stroke) {
       end();
     }
   });
-  // what is lacking, or too much, is pressed into the strokes that are there
+  // the pen's pressure makes up for ink that is lacking, or too much
   let slope = blocks.bare.map(() => 0);
   const clear = blocks.bare.slice();
   for (const ink of inks) {

@@ -1,7 +1,7 @@
 // outline.js - outline strokes: smooth curves along chains of edges that swell as a hand's do and keep clear of one another.
 // The same steps as outline.ps; penink_cli/blasting/outlines.py says why.
 
-// Outlines of a layer in the part of the picture that matters, in its units: [xs, ys, pen]. Their ink is on the blocks then.
+// Outlines of a layer in the part of the picture that matters, in its units: [xs, ys, pen]. Their ink is added to the blocks.
 function outlinesOf({picture, outlines, outlinePen, magnification: unit}, blocks) {
   const {side, bare} = blocks, width = blocks.width / unit, height = blocks.height / unit, found = [], ink = new Float64Array(bare.length);
   const x0 = blocks.x0 / unit, y0 = blocks.y0 / unit, x1 = blocks.x1 / unit, y1 = blocks.y1 / unit;

@@ -1,4 +1,4 @@
-// page.js - the page: what is seen of the picture, how one moves, prints and saves.
+// page.js - the page: the view of the picture, moving, printing and saving it.
 
 const UNIT = 2;                                               // CSS pixels a unit of the screen's texture: a pen of about one pixel
 const PRINTER = 72 / 600;                                     // what a printer of 600 dpi adds to an upright pen, points
@@ -70,10 +70,10 @@ function repaint(every = 1) {
 // The inks, the first at the bottom. They are transparent, and layers of one know nothing of those of another.
 const inks = () => [...new Set(layers.map(layer => layer.ink))];
 
-// A window (points) of the picture, drawn at so many points wide, as an SVG document for a device whose pixels are `gain` points;
-// `dot`: those of the one for which pens of a small picture are not too fine.
-// Written as penink_cli/outputs/svg.py does: in millimetres, a group a layer, a path a stroke, shapes for strokes that swell; all
-// of it within the frame, for a plotter knows no clip path.
+// A window (points) of the picture, drawn `width` points wide, as an SVG document. gain: points that the device adds to a stroke.
+// dot: a dot of the device for which the pens of a small picture are chosen, points.
+// The document is as penink_cli/outputs/svg.py writes it: in millimetres, a group a layer, a path a stroke, shapes for strokes that
+// swell. All of it lies within the frame, for a plotter knows no clip path.
 function svg(width, window, gain, dot = gain) {
   const height = width * size[1] / size[0], [x0, y0] = window, x1 = Math.min(window[2], width), y1 = Math.min(window[3], height), mm = x => +(x * 25.4 / 72).toFixed(3);
   const groups = layers.map(() => ({strokes: [], shapes: [], pens: new Map()}));
@@ -82,7 +82,7 @@ function svg(width, window, gain, dot = gain) {
     const {strokes, pens} = groups[layers.indexOf(layer)], wide = +(Math.max(0.1, pen) * 25.4 / 72).toFixed(4), by = layer.magnification;
     for (const points of cropped(xs, ys, count, by, pen / 2, [x0, y0, x1, y1])) {
       const d = points.map(([x, y]) => at(x, y));
-      // a dot is a line of a micrometre: one without length is not drawn by all, and dropped by vpype
+      // a dot is a line of a micrometre: some programs do not draw a line without length, and vpype drops it
       strokes.push([wide, d.every(p => p === d[0]) ? d[0] + "h.001" : d.filter((p, i) => p !== d[i - 1]).join(" ")]);
       pens.set(wide, (pens.get(wide) || 0) + 1);
     }

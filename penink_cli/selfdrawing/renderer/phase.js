@@ -4,7 +4,7 @@
 // A grid is {columns, rows, left, top, dx, dy, i0, j0, every}: node (i, j) lies at (left + i dx, top + j dy), and is cell
 // (i0 + i every, j0 + j every) of the picture's tone. Its arrays have a number a node.
 
-// What is predicted from each node to the right and downwards: weight times cosine and sine of the change, and the sign.
+// The links from each node to the right and downwards: weight times cosine and sine of the change predicted, and the sign.
 function linksOf({columns, rows, dx, dy}, nx, ny, density, weak) {
   const out = new Float32Array(6 * columns * rows);
   for (let j = 0, p = 0; j < rows; j++) for (let i = 0; i < columns; i++, p++) for (let k = 0; k < 2; k++) {
@@ -38,7 +38,7 @@ function halved({columns, rows, links}) {
   return {columns: across, rows: down, links: out};
 }
 
-// Every second node of a row from p on, before `end`, none of them at the border: the same as `agree` below, in a fifth of the time.
+// As `agree` below, in a fifth of the time: every second node of a row from p on, before `end`, none of them at the border.
 function sweepRow(links, psi, set, columns, p, end) {
   for (; p < end; p += 2) {
     if (set[p] === 2) continue;
@@ -55,7 +55,7 @@ function sweepRow(links, psi, set, columns, p, end) {
   }
 }
 
-// The nodes' unit numbers, from those of the coarser grid, each brought to agree with its neighbours; those known stay.
+// The nodes' unit numbers, from those of the coarser grid, each brought to agree with its neighbours. Nodes that are known stay.
 function relaxed({columns, rows, links}, coarse, sweeps, known) {
   const count = columns * rows, psi = new Float32Array(2 * count), set = known(columns, rows, psi);
   const agree = (p, i, j) => {
@@ -112,7 +112,7 @@ function relaxed({columns, rows, links}, coarse, sweeps, known) {
   return psi;
 }
 
-// The unit numbers of a grid of which a part may be known from before: who moves the picture sees its lines stay.
+// The unit numbers of a grid. A part of them may be known from before, so that lines stay while the picture is moved.
 function phaseOf(grid, nx, ny, density, weak, before) {
   const levels = [linksOf(grid, nx, ny, density, weak)];
   for (let last; last = levels[levels.length - 1], Math.min(last.columns, last.rows) > 4;) levels.push(halved(last));
@@ -178,7 +178,7 @@ function levelLines({columns, rows, left, top, dx, dy}, psi, nx, ny, density, wa
       }
     }
   }
-  // along the crossings; those of links across only lead on
+  // along the crossings; crossings of links across only lead on to the next
   const xs = new Float32Array(total + (total >> 2) + 1), ys = new Float32Array(total + (total >> 2) + 1), first = [0], ring = [];
   let n = 0;
   for (let turn = 0; turn < 2; turn++) for (let start = 0; start < total; start++) {

@@ -1,19 +1,19 @@
 // raster.js - strokes painted on a grid of pixels. A canvas, without a graphics card, takes five times as long.
 
 class Raster {
-  // The pixels left .. right, top .. bottom of wide x tall are paper, the others are nothing.
+  // Of wide x tall pixels those within left .. right, top .. bottom are paper; the others are left transparent.
   constructor(wide, tall, left, top, right, bottom) {
     Object.assign(this, {wide, tall, left: clamp(left, 0, wide), top: clamp(top, 0, tall), right: clamp(right, 0, wide), bottom: clamp(bottom, 0, tall)});
     this.light = new Float32Array(wide * tall).fill(255);
   }
 
-  // The polyline of the first `count` of xs, ys, `by` pixels a unit from (x, y), with round ends, half a pen `half` pixels wide.
-  // Strokes let light through where they cover half a pixel each; `solid` ones, of which parts overlap, do not add up.
+  // The polyline of the first `count` of xs, ys, `by` pixels a unit from (x, y), with round ends; half its pen is `half` pixels wide.
+  // Strokes that cover parts of a pixel add up; `solid` ones, parts of which overlap, do not.
   stroke(xs, ys, count, by, x, y, half, solid) {
     for (let k = 1; k < count; k++)
       this.segment(xs[k - 1] * by + x - 0.5, ys[k - 1] * by + y - 0.5, xs[k] * by + x - 0.5, ys[k] * by + y - 0.5, half, solid || k === 1, solid || k === count - 1, solid);
   }
-  // From (ax,ay) to (bx,by), pixels having their middles at whole numbers, with a round end there or cut square.
+  // From (ax,ay) to (bx,by), pixels having their middles at whole numbers. first, last: whether that end is round, else it is cut square.
   segment(ax, ay, bx, by, half, first, last, solid) {
     const {light, wide} = this, dx = bx - ax, dy = by - ay, long = Math.sqrt(dx * dx + dy * dy);
     // along its main axis and across
@@ -42,7 +42,7 @@ class Raster {
   }
 
   // A shape with corners at xs, ys, `by` pixels a unit from (x, y). How much of each pixel it covers is summed up, so shapes
-  // side by side add up; what a side of it covers is kept where it is crossed, and what is right of it follows when it is shown.
+  // side by side add up. A side changes the sums where it passes; running sums along the rows cover the pixels right of it at the end.
   fill(xs, ys, by, x, y) {
     this.sums ||= new Float32Array((this.wide + 2) * this.tall);
     let area = 0;

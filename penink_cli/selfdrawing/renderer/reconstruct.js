@@ -92,8 +92,9 @@ class Picture {
     return false;
   }
 
-  // What edges hide from (u,v) in the square around (cx,cy): null, true for all of it, or ten numbers an edge: (x,y) is
-  // hidden where three linear functions, each constant, x and y, exceed the tenth, reach 0 and exceed 0.
+  // The shadows of edges, seen from (u,v), in the square around (cx,cy): null for none, true if one covers all of it, or ten numbers an
+  // edge: three linear functions, each a constant and factors of x and y, and a limit. (x,y) is hidden where the first exceeds the
+  // limit, the second is at least 0 and the third exceeds 0.
   shadow(list, u, v, cx, cy) {
     const E = this.edges, out = [];
     for (const e of list) {
@@ -138,8 +139,8 @@ class Picture {
     return this.pathsOf[key];
   }
 
-  // The same as reconstruct, from tiles that are kept as long as the grid stays the same: who moves the picture needs new
-  // ones at its border only.
+  // As reconstruct, from tiles that are kept as long as the grid stays the same: a picture that is moved needs new tiles at its border
+  // only.
   tone(n, m, x0, y0, x1, y1) {
     const wide = x1 - x0, out = new Uint8Array(wide * (y1 - y0));
     if (n !== this.n || m !== this.m || this.tiles.size > MOST_TILES) Object.assign(this, {n, m, tiles: new Map()});
@@ -195,8 +196,8 @@ class Picture {
     return tone;
   }
 
-  // The samples' values around square (I, J), and of those that edges may hide there the shadows and where paths to them
-  // may bend; null where nothing is hidden. Kept: that takes as long as a screenful of cells.
+  // The values of the samples around square (I, J), and of each sample that edges may hide there its shadows and where paths to it may
+  // bend; null where nothing is hidden. It is kept, for it takes as long as a screenful of cells.
   hidden(I, J) {
     const {w, h, ink} = this, cx = I + 0.5, cy = J + 0.5, taps = [], key = this.at(I, J);
     if (this.squares.has(key)) return this.squares.get(key);

@@ -1,9 +1,9 @@
-// reload.js - a page that follows its file: now and then a frame of the same file tells the mark of what it is by now,
-// and where that is another the page loads itself anew. A local file may be neither fetched nor read; this it may.
+// reload.js - a page that follows its file. Now and then it opens its file in a hidden frame, which tells the mark of the file's drawing;
+// where that is another mark, the page loads itself again. A page may neither fetch nor read a local file, but open one in a frame.
 
 const LOOK = 300;                                             // milliseconds from one answer to the next look
 
-// mark: of the page's drawing. Whether this is such a frame, which has no more to do.
+// Whether this page is such a frame, which has no more to do. mark: of its drawing.
 function reloading(mark) {
   if (location.search === "?mark") {
     parent.postMessage({mark}, "*");

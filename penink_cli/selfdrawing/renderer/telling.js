@@ -1,8 +1,8 @@
 // telling.js - telling lines: those that there is room for at the picture's size, swelling and tapered.
 // The same steps as telling.ps; penink_cli/lines/strokes.py and selfdrawing/telling.py say why.
 
-// Telling lines of a layer on a picture of width by height points: {xs, ys, widths} each, in points, the last pen's width at
-// each point; a spot may have but one point.
+// Telling lines of a layer on a picture of width by height points: {xs, ys, widths} each, in points; widths has the pen's width at
+// each point. A spot may have but one point.
 function tellingOf(layer, width, height, white) {
   if (!layer.told.length) return [];
   if (!layer.toldAt || layer.toldAt.width !== width || layer.toldAt.height !== height || layer.toldAt.pen !== layer.linePen) {
@@ -99,7 +99,7 @@ function round(x, y, radius, from, upto) {
   return [at.map(a => x + radius * Math.cos(a)), at.map(a => y + radius * Math.sin(a))];
 }
 
-// The dark lines that are seen in the window, as wide as to be asked of the device. Their ink is on the blocks then.
+// The dark lines that are seen in the window, in the widths to ask of the device. Their ink is added to the blocks.
 function tellingOn(layer, blocks, gain) {
   const ink = new Float64Array(blocks.bare.length), out = [], more = -MEAN * gain;
   for (const {xs, ys, widths} of tellingOf(layer, blocks.width, blocks.height, false)) {
