@@ -23,40 +23,44 @@ from penink_cli.ground.errors import ParameterError
 from penink_cli.ground.model import ColourImage, GreyImage
 
 STRENGTH, DETAIL = 0.6, 1.8
-PIXELS_PER_PT = 4.0  # what a drawing can show, and no more is worked on
+PIXELS_PER_PT = 4.0  # as many as a drawing can show: a larger photo is made smaller
 
-_WHOLE_FROM = 0.3  # of the strength: below, the result goes over to the luma as stored
-_POINTS, _POINTS_BLUR_PT, _LEAST_RANGE = 0.003, 0.35, 0.25  # shares of the picture beyond black and white
-_EYE_PT, _BROAD_PT, _AROUND_PT = 0.7, 4.0, 9.0  # activity: what lies between the first two, around within the third
-_BACKGROUND, _BUSY, _MOST_BUSY = 0.25, 0.8, 1.5  # the weight of places without activity; its quantile that counts 1
-_PAGE, _PAGE_PAPER = 0.5, 0.985  # a picture more than half of which is so light is a page: its paper stays
-_INK, _PAPER = 0.05, 0.95  # what is darker is solid, what is lighter is bare
-# Amid what is nearly black, of σ DEEP_PT, tones go down by up to SINK: all of a dark cloth is black, not parts of it.
-# Where that Gaussian is darker than ALL_DEEP they go down wholly, where it is lighter than NOT_DEEP not at all; nor do
-# places that are lighter than STAYS themselves.
+_WHOLE_FROM = 0.3  # the strength from which on the picture is composed; below, the result is mixed with the stored luma
+# The shares of the picture that lie beyond the black and the white point, at each end; the σ of the blur before these
+# are found; the least grey from one point to the other.
+_POINTS, _POINTS_BLUR_PT, _LEAST_RANGE = 0.003, 0.35, 0.25
+_EYE_PT, _BROAD_PT, _AROUND_PT = 0.7, 4.0, 9.0  # σ of the two Gaussians between which activity lies, σ of its average
+# The weight of places without activity; the quantile of activity at which it adds 1; the most that it adds.
+_BACKGROUND, _BUSY, _MOST_BUSY = 0.25, 0.8, 1.5
+_PAGE, _PAGE_PAPER = 0.5, 0.985  # a picture of which more than the first share is lighter than the second is a page
+_INK, _PAPER = 0.05, 0.95  # greys up to the first become solid ink, from the second on bare paper
+# Where a Gaussian of σ _DEEP_PT is darker than _NOT_DEEP, tones go down; where darker than _ALL_DEEP, by _SINK. So all
+# of a dark cloth becomes black, and not parts of it. Places that are lighter than _STAYS themselves stay.
 _DEEP_PT, _SINK, _ALL_DEEP, _NOT_DEEP, _STAYS = 3.0, 0.07, 0.13, 0.21, 0.3
-# What was lighter than SHINES is a highlight and no relief; what was darker by NEARLY may wholly be in relief.
+# A broad tone lighter than _SHINES is a highlight and in no relief; one darker than that by _NEARLY may wholly be.
 _SHINES, _NEARLY = 0.90, 0.15
-# Broad lights from BLANK_FROM on go up until what is BLANK is bare paper: skin and skies are not combed with single
-# lines.
+# Broad lights from _BLANK_FROM on rise, so that those from _BLANK on are bare paper: skin and skies are not combed with
+# single lines.
 _BLANK_FROM, _BLANK = 0.74, 0.90
-# So do all lights from LIGHT_FROM on, until BARE, but less steeply: a steeper curve makes haloes.
+# All lights from _LIGHT_FROM to _BARE rise too, but less steeply: a steeper curve makes haloes.
 _LIGHT_FROM, _BARE = 0.68, 0.92
-_LIGHTS, _MIDDLE = 0.75, 0.2  # what was so light is no lifted relief; darker than that by MIDDLE it wholly is
-_TELLING = 1_500_000  # values, more or less, that tell the range of a photo
-_NARROW = 0.35  # of the range of grey: a photograph that uses no more is told of
+# Relief as light as _LIGHTS does not count as lifted by the exposure; relief darker than that by _MIDDLE wholly does.
+_LIGHTS, _MIDDLE = 0.75, 0.2
+_TELLING = 1_500_000  # about as many values are looked at to find the range of a photo
+_NARROW = 0.35  # of the range of grey: a photograph that uses less is reported
 
 
 @dataclass(frozen=True)
 class Choice:
     """How a picture is composed.
 
-    width_pt: of the drawing on paper.
+    width_pt: of the drawing on paper, points.
     strength: 0 … 1, how far tones are moved; 0 is the luma as stored.
-    detail: how much detail is raised; 1 leaves it as it is.
-    mix: weights of red, green and blue, None to choose.
+    detail: by how much detail is raised; 1 leaves it as it is.
+    mix: weights of red, green and blue, None for those that keep most contrast.
     target: the tone distribution.
-    fade_pt: over which the drawing fades out within the mask's border.
+    pixels_per_pt: the most pixels of the grey to a point on paper.
+    fade_pt: the length, points, over which the drawing fades out within the mask's border.
     """
 
     width_pt: float
@@ -69,7 +73,7 @@ class Choice:
 
 
 def working_size(shape: tuple[int, ...], width_pt: float, pixels_per_pt: float = PIXELS_PER_PT) -> tuple[int, int]:
-    """Width and height of the grey: the photo's own, or as many pixels as the drawing can show."""
+    """Width and height of the grey: the photo's own, or pixels_per_pt where the photo has more."""
     height, width = shape[:2]
     most = max(2, math.floor(width_pt * pixels_per_pt + 0.5))
     if width <= most:
@@ -89,8 +93,9 @@ def compose(
 ) -> Picture:
     """Grey (h, w), 0 ink … 1 paper, of `working_size`.
 
-    luma: what makes grey of colours where nothing is composed.
-    mask: of the photo's size, white where the picture is drawn. oval: without a mask, the frame's oval is one.
+    luma: makes grey of colours where nothing is composed.
+    mask: of the photo's size, white where the picture is drawn. oval: whether, without a mask, the oval in the frame is
+        the mask.
     report: receives a line for each thing that was chosen.
 
     Raises ParameterError for a mask of another size.
@@ -122,7 +127,7 @@ def compose_colours(
 ) -> Picture:
     """Colours (h, w, 3), 0 … 1, of `working_size`: the photo's, as light as the composed grey.
 
-    mask, oval, report: as `compose` has them. The grey that no mix is chosen for is luma. Raises as `compose` does.
+    mask, oval, report: as `compose` has them. Where the choice has no mix, the grey is luma. Raises as `compose` does.
     """
     width, height = working_size(photo.values.shape, choice.width_pt, choice.pixels_per_pt)
     pt = width / choice.width_pt
@@ -138,7 +143,7 @@ def compose_colours(
 
 
 def _in_three(picture: Picture) -> Picture:
-    """Grey as red, green and blue."""
+    """Grey (h, w) as red, green and blue (h, w, 3); colours as they are."""
     return picture if picture.ndim == 3 else np.repeat(picture[..., None], 3, axis=2)
 
 
@@ -156,6 +161,7 @@ def _checked_fade(
     photo: GreyImage | ColourImage, mask: GreyImage | None, width: int, height: int, soft: float, oval: bool,
     threads: int,
 ) -> Picture | None:  # fmt: skip
+    """As `_fade`. Raises ParameterError for a mask of another size than the photo's."""
     if mask is not None and mask.values.shape != photo.values.shape[:2]:
         (h, w), (rows, columns) = photo.values.shape[:2], mask.values.shape
         raise ParameterError(f"the mask has {columns} x {rows} pixels; the photo has {w} x {h}")
@@ -165,9 +171,9 @@ def _checked_fade(
 def _composed(
     colours: Picture, choice: Choice, pt: float, fade: Picture | None, threads: int, report: Callable[[str], None]
 ) -> Picture:
-    """The composition proper of (h, w) or (h, w, 3); pt: pixels a point.
+    """The composed grey (h, w) of grey (h, w) or colours (h, w, 3), 0 … 1; pt: pixels a point. fade: see `_fade`.
 
-    A plane of a large drawing is eight megabytes: what is not needed any more is let go of at once.
+    A plane of a large drawing has eight megabytes, so each is given up as soon as it is not needed any more.
     """
     strength = max(choice.strength, _WHOLE_FROM)
     if colours.ndim == 3:
@@ -192,7 +198,7 @@ def _composed(
     del weight
     table, slope = exposure.curve(upto, choice.target, strength)
     exposed = looked_up(broad, table)
-    # slopes belong to the middle of their steps
+    # A slope belongs to the middle of its step.
     slopes = looked_up(broad, slope, 0.5 / exposure.STEPS, 1 - 0.5 / exposure.STEPS)
 
     def less_in_lights(carved: Picture, exposed: Picture, broad: Picture) -> Picture:
@@ -221,7 +227,7 @@ def _composed(
 
 
 def _sunk(grey: Picture, pt: float, threads: int) -> Picture:
-    """Grey (h, w) whose deep shades are black; what is lighter in them stays."""
+    """Grey (h, w) with its deep shades darkened to black; lighter places within them stay."""
 
     def sunk(grey: Picture, around: Picture) -> Picture:
         deep = np.clip((np.float32(_NOT_DEEP) - around) * np.float32(1 / (_NOT_DEEP - _ALL_DEEP)), 0, 1)
@@ -233,7 +239,7 @@ def _sunk(grey: Picture, pt: float, threads: int) -> Picture:
 
 
 def _blank(grey: Picture, carved: Picture, light: float, bare: float, paper: float = 1.0, threads: int = 1) -> Picture:
-    """Grey (h, w) whose lights from `light` on rise evenly to `paper` at `bare`, unless they are in relief."""
+    """Grey (h, w) with lights raised: `light` stays, `bare` becomes `paper`, linear in between; less so in relief."""
     more = np.float32((paper - light) / (bare - light) - 1)
 
     def blank(grey: Picture, carved: Picture) -> Picture:
@@ -247,16 +253,16 @@ def points(grey: Picture, pt: float, fade: Picture | None, threads: int) -> tupl
     """The greys that become black and white."""
     upto = exposure.histogram(blurred(grey, _POINTS_BLUR_PT * pt, threads), fade, 4096)
     black, white = exposure.quantile(upto, _POINTS), exposure.quantile(upto, 1 - _POINTS)
-    if white - black < _LEAST_RANGE:  # a picture of nearly one grey is not torn apart
+    if white - black < _LEAST_RANGE:  # the contrast of a picture of nearly one grey is not raised without limit
         middle = min(max((black + white) / 2, _LEAST_RANGE / 2), 1 - _LEAST_RANGE / 2)
         black, white = min(black, middle - _LEAST_RANGE / 2), max(white, middle + _LEAST_RANGE / 2)
     return black, white
 
 
 def narrow_range(photo: GreyImage | ColourImage) -> float | None:
-    """The share of the range of values that a photo uses, where it is small; one of a single value says nothing.
+    """The share of the range of values that a photo uses, if it is below _NARROW; else, or for one single value, None.
 
-    Of a large photo some rows tell it.
+    Of a large photo some rows are looked at.
     """
     values = photo.values[:: max(1, photo.values.size // _TELLING)]
     counts = np.bincount(values.ravel(), minlength=photo.maxval + 1)
@@ -266,7 +272,7 @@ def narrow_range(photo: GreyImage | ColourImage) -> float | None:
 
 
 def _weight(grey: Picture, noise: float, pt: float, threads: int) -> Picture:
-    """How much each place counts for the exposure: the subject decides, not an empty background."""
+    """How much each place (h, w) counts for the exposure: a busy subject more than an empty background."""
 
     def stirred(fine: Picture, broad: Picture) -> Picture:
         band = fine - broad
@@ -291,13 +297,17 @@ def _scaled(values: np.ndarray, maxval: int, width: int, height: int, threads: i
 
 
 def _sized(photo: GreyImage, width: int, height: int, threads: int) -> Picture:
+    """Grey 0 … 1 at the working size."""
     return _scaled(photo.values, photo.maxval, width, height, threads)
 
 
 def _fade(
     mask: GreyImage | None, width: int, height: int, soft: float, oval: bool, threads: int
 ) -> Picture | None:
-    """How much of the picture is drawn, 0 … 1: all within the mask, nothing at its border and beyond."""
+    """How much of the picture is drawn, (h, w), 0 … 1: nothing outside the mask, None for no mask.
+
+    soft: pixels within the mask's border over which it rises to 1.
+    """
     if mask is None and not oval:
         return None
     if mask is not None:

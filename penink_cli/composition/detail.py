@@ -1,7 +1,8 @@
 """A picture as a base of broad tones and the detail upon it, and detail raised until a pen can show it.
 
-The base is a guided filter of the picture by itself (He, Sun and Tang 2013), made at a coarse grid (He and Sun 2015):
-it keeps strong edges, so that raising what is left makes no halo along them.
+The base is a guided filter of the picture by itself (He, Sun and Tang 2013), made on a coarse grid (He and Sun 2015).
+It keeps strong edges, so that raising the detail makes no halo along them. Relief belongs to the detail: in the base
+the exposure would flatten it with the lights.
 """
 
 from __future__ import annotations
@@ -11,41 +12,42 @@ import numpy as np
 from penink_cli.composition.filters import Picture, blurred, by_rows, enlarged, looked_up, shrunk
 from penink_cli.composition.relief import in_relief
 
-_RADIUS_PT = 4.0  # of the Gaussian that the guided filter gathers with
-_GRID_PT = 0.75  # of the base
-_FLAT = 0.045  # a local standard deviation of grey that is detail; what is well above is an edge
+_RADIUS_PT = 4.0  # σ of the Gaussian by which the guided filter averages
+_GRID_PT = 0.75  # step of the coarse grid
+_FLAT = 0.045  # local standard deviation of grey up to which it is detail; where it is well above there is an edge
 _FLAT_IN_RELIEF = 0.085  # the same in relief, where only greater steps belong to the base
-_FINE_PT, _FINE_SHARE = 0.5, 0.4  # what is finer a pen cannot show; this share of it is kept
-_LIMIT = 0.4  # detail is not raised beyond that
+_FINE_PT, _FINE_SHARE = 0.5, 0.4  # σ of the detail that is too fine for a pen, and the share of it that is kept
+_LIMIT = 0.4  # of grey, towards which raised detail grows ever slower
 
-# Detail of the usual strength is raised by the gain asked for, faint detail by more, strong by less.
+# Detail of the usual strength is raised by the gain asked for, fainter detail by more, stronger detail by less.
 _USUAL, _OFFSET, _POWER = 0.055, 0.012, 0.4
-_LESS, _MORE = 0.7, 1.5  # times the gain, at the least and at the most
+_LESS, _MORE = 0.7, 1.5  # the least and the most, times the gain
 _GAIN = np.array([round(((_USUAL) / (k / 512 + _OFFSET)) ** _POWER, 9) for k in range(257)]).clip(_LESS, _MORE)
 
-# Relief in light tones is lost on the pen. So of what the exposure has lifted it by, more than LIFT is taken back in
-# part. Detail is raised by CARVED more where it was lifted by LIFTED or more.
+# A pen cannot show relief in light tones. So where the exposure has made relief lighter by more than _LIFT, _TAKEN_BACK
+# of the excess is taken back. Where it has made relief lighter by _LIFTED or more, detail is raised by _CARVED more.
 _LIFT, _TAKEN_BACK = 0.12, 0.6
 _LIFTED, _CARVED = 0.25, 0.35
-_DOWN_TO, _DOWN = 0.6, 0.4  # lights in relief that are lighter come down by this part of what they exceed it by
-_DEEPER = 0.5  # detail in relief is raised by so much more
+_DOWN_TO, _DOWN = 0.6, 0.4  # greys in relief above the first come down by this part of what they are above it
+_DEEPER = 0.5  # detail in relief is raised by this part more
 
-# Detail finer than BROAD is grain, as grass has it, where its strength is GRAIN of that of the broader detail or more;
-# at ALL_GRAIN, GRAIN_LEFT of it is raised.
+# Detail finer than _BROAD_PT is grain, as of grass, if it is at least _GRAIN times as strong as broader detail. At
+# _ALL_GRAIN times only _GRAIN_LEFT of the detail is raised.
 _BROAD_PT, _GRAIN, _ALL_GRAIN, _GRAIN_LEFT = 1.2, 0.6, 0.95, 0.4
 
-# Where detail is as strong as STRONG lights above LIGHT begin to come down; RANGE more, and they do so by SUNK of it.
+# Where detail is stronger than _STRONG, greys above _LIGHT come down; where it is stronger by _RANGE, they come down by
+# _SUNK of what they are above it.
 _STRONG, _RANGE, _SUNK, _LIGHT = 0.045, 0.05, 0.6, 0.60
 
 
 def base(
     grey: Picture, ink: float, pixels_per_pt: float, threads: int, colours: Picture | None = None
 ) -> tuple[Picture, Picture]:  # fmt: skip
-    """Broad tones (h, w) of grey (h, w), sharp at strong edges, and how much each place is in relief, 0 … 1.
+    """Broad tones (h, w) of grey (h, w), 0 … 1, sharp at strong edges; and how much each place is in relief, 0 … 1.
 
-    colours: (h, w, 3) red, green and blue, if there are any: what may be skin by its colour is in no relief.
-
-    ink: how much the picture is to take, in parts of the usual; with less of it there is less for relief.
+    ink: how much of it the picture is to take, in parts of the usual; where there is less, less of it goes to relief.
+    pixels_per_pt: pixels to a point on paper.
+    colours: (h, w, 3) red, green and blue, None for a grey picture; what has the colour of skin is not in relief.
     """
     height, width = grey.shape
     cell = max(1.0, _GRID_PT * pixels_per_pt)
@@ -70,11 +72,11 @@ def raised(
     detail: Picture, lights: Picture, slope: Picture, lifted: Picture, carved: Picture, gain: float, noise: float,
     pixels_per_pt: float, threads: int,
 ) -> Picture:  # fmt: skip
-    """The base `lights` (h, w) with the detail upon it.
+    """The exposed base `lights` (h, w) with the detail (h, w), raised, upon it; 0 is ink, 1 paper.
 
-    slope: that of the exposure's curve at each pixel, which has raised or flattened the base.
-    lifted: by how much relief is lighter for it, 0 elsewhere. carved: how much each place is in relief, 0 … 1.
-    gain: of detail of usual strength. noise: its standard deviation, grey.
+    slope: (h, w) that of the exposure's curve at each pixel. lifted: (h, w) by how much the exposure has made relief
+        lighter, 0 where there is none. carved: (h, w) how much each place is in relief, 0 … 1.
+    gain: by which detail of usual strength is raised. noise: its standard deviation, in grey.
     """
     pt = pixels_per_pt
     middle = blurred(detail, _FINE_PT * pt, threads)
@@ -84,7 +86,7 @@ def raised(
         return blurred(values * values, sigma_pt * pt, threads)
 
     def guard(values: Picture, level: float) -> Picture:
-        """Values without what is no more than noise."""
+        """Detail, damped to 15 % where it is no stronger than noise of that level."""
         if level <= 0:
             return values
 
@@ -122,12 +124,15 @@ def raised(
 
 
 def _root(squares: Picture) -> Picture:
-    """The square root of what a low-pass, which may be wrong by a rounding, leaves of squares."""
+    """The square root of blurred squares, which rounding may leave a little below 0."""
     return np.sqrt(np.maximum(squares, 0))
 
 
 def _with_room(lights: Picture, drawn: Picture, pt: float, threads: int) -> Picture:
-    """Relief needs ink: where there is much detail the lights come down to carry it, and darks rise a little."""
+    """The lights with the raised detail upon them.
+
+    Detail needs room on both sides: where it is strong, lights come down to carry it, and darks rise a little.
+    """
 
     def with_room(lights: Picture, drawn: Picture, squares: Picture) -> Picture:
         strong = _root(squares)
@@ -145,6 +150,6 @@ def _with_room(lights: Picture, drawn: Picture, pt: float, threads: int) -> Pict
 
 
 def _limited(values: Picture) -> Picture:
-    """Values that grow ever slower towards ±0.4."""
+    """Values that grow ever slower towards ±_LIMIT."""
     part = values * np.float32(1 / _LIMIT)
     return values / np.sqrt(1 + part * part)

@@ -1,7 +1,7 @@
 """How dark things are drawn: one monotone curve for the whole picture, part of the way to an illustrator's tones.
 
-A photograph's tones crowd in the middle. A drawing spends paper and black deliberately, and these targets say how
-much of the picture is to be how light: quantiles of grey, 0 ink and 1 paper.
+A photograph's tones crowd in the middle; a drawing spends paper and black deliberately. A target says how light the
+picture is to be, by quantiles of grey, 0 ink and 1 paper.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from penink_cli.composition.filters import Picture, gaussian
 from penink_cli.ground.errors import ParameterError
 from penink_cli.ground.model import Floats
 
-Quantiles = tuple[tuple[float, float], ...]  # share of the picture that is darker, and its lightest grey
+Quantiles = tuple[tuple[float, float], ...]  # a share of the picture, the darkest, and the lightest grey in that share
 
 #: The tone distributions known by name.
 TARGETS: dict[str, Quantiles] = {
@@ -26,11 +26,11 @@ TARGETS: dict[str, Quantiles] = {
     "spot": ((0, 0), (0.20, 0.02), (0.27, 0.5), (0.44, 0.72), (0.52, 1), (1, 1)),
 }
 
-STEPS = 256
+STEPS = 256  # of grey, in the curve
 _LEAST_SLOPE, _MOST_SLOPE = 0.35, 2.0
-_SMOOTH = 8.0  # steps over which the full curve is smoothed
-_ENDS, _BLACK, _PAPER = 0.03, 0.06, 0.97  # the darkest and the lightest 3 % get these greys, as far as may be
-_DOWN, _UP = 1.8, 1.6  # how much the curve's halves may be stretched for that
+_SMOOTH = 8.0  # σ of the Gaussian that smooths the full curve, steps
+_ENDS, _BLACK, _PAPER = 0.03, 0.06, 0.97  # a share of the picture at each end, and the greys that these are to reach
+_DOWN, _UP = 1.8, 1.6  # the most by which the curve's dark and light half are stretched to reach them
 
 
 def check_quantiles(quantiles: Sequence[tuple[float, float]]) -> None:
@@ -43,7 +43,7 @@ def check_quantiles(quantiles: Sequence[tuple[float, float]]) -> None:
 
 
 def inks(target: Quantiles) -> float:
-    """How much ink a target has the picture take, in parts of what the house's has."""
+    """How much ink a picture takes by a target, in parts of what it takes by the target "house"."""
 
     def ink(quantiles: Quantiles) -> float:
         return 1 - math.fsum((b - a) * (c + d) / 2 for (a, c), (b, d) in pairwise(quantiles))
@@ -52,14 +52,14 @@ def inks(target: Quantiles) -> float:
 
 
 def histogram(grey: Picture, weight: Picture | None, steps: int = STEPS) -> Floats:
-    """How much of the picture is at most so light: (steps + 1,) from 0 to 1, at even steps of grey."""
+    """(steps + 1,) the share of the picture, 0 … 1, up to each even step of grey; weight: (h, w), None for 1 each."""
     upto = np.zeros(steps + 1)
     np.cumsum(filters.histogram(grey, weight, steps), out=upto[1:])
     return upto / upto[-1] if upto[-1] else np.linspace(0, 1, steps + 1)
 
 
 def quantile(upto: Floats, share: float) -> float:
-    """The grey below which that share of the picture lies, by its cumulated histogram."""
+    """The grey below which that share of the picture lies; upto: its histogram, as of `histogram`."""
     i = min(max(int(np.searchsorted(upto, share)) - 1, 0), len(upto) - 2)
     rise = float(upto[i + 1] - upto[i])
     inside = (share - float(upto[i])) / rise if rise > 0 else 0.0
@@ -67,9 +67,10 @@ def quantile(upto: Floats, share: float) -> float:
 
 
 def curve(upto: Floats, target: Quantiles, strength: float) -> tuple[Floats, Floats]:
-    """The curve (STEPS + 1,) over greys at even steps, and its slope (STEPS,), for a picture's cumulated histogram.
+    """The curve (STEPS + 1,) over greys at even steps, and its slope (STEPS,).
 
-    strength: 0 leaves tones as they are, 1 goes all the way as far as slopes may.
+    upto: the picture's histogram, as of `histogram`. strength: 0 leaves tones as they are, 1 brings them to the target,
+    as far as the least and the most slope let them.
     """
     shares, greys = (np.array(v, np.float64) for v in zip(*target))
     full = _smoothed(interpolated(upto, shares, greys), _SMOOTH)
@@ -89,14 +90,14 @@ def curve(upto: Floats, target: Quantiles, strength: float) -> tuple[Floats, Flo
 
 
 def at(table: Floats, grey: float) -> float:
-    """The value of a table over even steps at one grey."""
+    """The value at one grey of a table over even steps of grey from 0 to 1."""
     place = min(max(grey, 0.0), 1.0) * (len(table) - 1)
     i = min(int(place), len(table) - 2)
     return float(table[i] + (place - i) * (table[i + 1] - table[i]))
 
 
 def interpolated(x: Floats, xs: Floats, ys: Floats) -> Floats:
-    """The polygon through xs, ys at x, in plain operations one by one (no machine fuses them)."""
+    """The polygon through xs, ys at x. numpy's own may fuse a product and a sum, which changes the last bit."""
     i = np.clip(np.searchsorted(xs, x, side="right") - 1, 0, len(xs) - 2)
     share = (x - xs[i]) / (xs[i + 1] - xs[i])
     return np.asarray(ys[i] + share * (ys[i + 1] - ys[i]))

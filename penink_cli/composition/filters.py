@@ -1,6 +1,7 @@
 """Smoothing and shrinking of pictures, the same numbers on every machine and for any number of threads.
 
-This module alone imports the compiled kernel. Pictures are float32 (h, w) of any range; frames are mirrored.
+This module alone imports the compiled kernel `filters`. Pictures are float32 (h, w) of any range. Beyond its frame a
+picture goes on as its mirror image.
 """
 
 from __future__ import annotations
@@ -19,18 +20,19 @@ from penink_cli.ground import threads as threading
 Picture = npt.NDArray[np.float32]
 
 _BAND = 64  # rows of a task
-# Pixels that are worked on at a time: some pictures of that stay near the processor. With a quarter of them two threads
-# take longer than one: for each step numpy lets go of Python's lock and takes it again.
+# Pixels of a task of `by_rows`: several arrays of so many stay in the processor's cache. With a quarter of them two
+# threads take longer than one, since numpy lets go of Python's lock and takes it again for each step.
 _NEAR = 1 << 17
-_COARSE, _KEPT = 4.0, 2.5  # a wider Gaussian (pixels) is that of a smaller view, of about that many pixels, enlarged
+# A Gaussian of σ above _COARSE pixels is taken in a smaller view, where its σ is about _KEPT pixels, and enlarged.
+_COARSE, _KEPT = 4.0, 2.5
 
 
 def shrunk(
     values: npt.NDArray[np.generic], width: int, height: int, scale: float = 1.0, threads: int = 1, whole: int = 1
 ) -> Picture:
-    """Means of values (h, w) or (h, w, channels) over the pixels of a picture of width × height, times scale.
+    """A picture of width × height: means of values (h, w) or (h, w, channels) over each pixel's area, times scale.
 
-    whole: what whole numbers are divided by first, as if they had been made a picture: that takes four times the room.
+    whole: divides values that are whole numbers first. A picture made of these beforehand takes four times the memory.
     """
     planes = np.ascontiguousarray(values if values.ndim == 3 else values[..., None])
     out = np.empty((height, width, planes.shape[2]), np.float32)
@@ -39,7 +41,7 @@ def shrunk(
 
 
 def enlarged(values: Picture, width: int, height: int, threads: int = 1) -> Picture:
-    """Values (h, w), linear in between, for a picture of width × height of the same frame."""
+    """Values (h, w) at the pixels of a picture of width × height of the same frame, linear in between."""
     if values.shape == (height, width):
         return values
     values = np.ascontiguousarray(values)
@@ -55,7 +57,7 @@ def blurred(values: Picture, sigma: float, threads: int = 1) -> Picture:
     if sigma > _COARSE and factor > 1 and min(height, width) >= 4 * factor:
         across, down = -(-width // factor), -(-height // factor)
         step = width / across
-        # means over areas and linear interpolation each have a variance of their own
+        # Means over areas have a variance of 1/12, linear interpolation one of 1/6.
         rest = math.sqrt(max(0.0, (sigma / step) ** 2 - 1 / 12 - 1 / 6))
         return enlarged(blurred(shrunk(values, across, down, threads=threads), rest, threads), width, height, threads)
     weights = gaussian(sigma)
@@ -70,7 +72,7 @@ def blurred(values: Picture, sigma: float, threads: int = 1) -> Picture:
 
 @lru_cache
 def gaussian(sigma: float) -> Picture:
-    """Weights of a Gaussian from the middle one outwards; all, with their mirror images, sum to 1."""
+    """Weights (n,) of a Gaussian from the middle outwards; with their mirror images they sum to 1. sigma: pixels."""
     if sigma < 0.2:
         return np.ones(1, np.float32)
     w = [round(math.exp(-0.5 * (k / sigma) ** 2), 9) for k in range(math.ceil(3 * sigma) + 1)]
@@ -79,7 +81,7 @@ def gaussian(sigma: float) -> Picture:
 
 
 def looked_up(values: Picture, table: npt.NDArray[np.float64], low: float = 0.0, high: float = 1.0) -> Picture:
-    """The function that table (n,) holds at even steps from low to high, linear in between and constant beyond."""
+    """A function of values (h, w), given by a table (n,) at even steps from low to high; linear in between."""
     scale = (len(table) - 1) / (high - low)
     rising = np.append(np.diff(table), 0.0).astype(np.float32)
     out = np.empty(values.shape, np.float32)
@@ -88,16 +90,19 @@ def looked_up(values: Picture, table: npt.NDArray[np.float64], low: float = 0.0,
 
 
 def histogram(values: Picture, weights: Picture | None, steps: int) -> npt.NDArray[np.int64]:
-    """How much of weights (h, w), in 4096ths, there is at each of as many even steps of values (h, w), 0 … 1."""
+    """(steps,) the sum of the weights, in 4096ths, of the values in each of so many even steps from 0 to 1.
+
+    values: (h, w). weights: (h, w), None for 1 each.
+    """
     counts = np.zeros(steps, np.int64)
     filters.histogram(values, np.zeros((0, 0), np.float32) if weights is None else weights, counts)
     return counts
 
 
 def by_rows(work: Callable[..., Picture], *pictures: npt.NDArray[Any], threads: int = 1) -> Picture:
-    """What `work` makes of pictures or masks (h, w) point by point, made of a few rows at a time.
+    """What `work` makes of pictures or masks (h, w), each pixel of the pixels at its place; a few rows at a time.
 
-    What comes in between stays near the processor so: that takes half as long.
+    A few rows, and all that comes in between, stay in the processor's cache: that takes half as long.
     """
     rows, columns = pictures[0].shape
     out = np.empty((rows, columns), np.float32)
@@ -110,4 +115,5 @@ def by_rows(work: Callable[..., Picture], *pictures: npt.NDArray[Any], threads: 
 
 
 def _each(rows: int, work: Callable[[int, int], object], threads: int) -> None:
+    """Do the work, which takes the first row and one past the last, for all rows."""
     threading.share(threading.ranges(work, rows, _BAND), threads)

@@ -1,8 +1,8 @@
 """The frame of a scan left out, and colours made grey by the weights of red, green and blue that keep most contrast.
 
-Luma gives many colours that differ to the eye the same grey: the red and the green of a parrot, say. So weights that
-sum to 1 are tried in steps of a tenth. Those are taken that keep most of the differences between places near each other
-(after Gooch et al., Color2Gray, 2005, and Lu et al., Contrast Preserving Decolorization, 2012).
+Luma gives the same grey to many colours that differ to the eye: the red and the green of a parrot, say. So weights that
+sum to 1 are tried in steps of a tenth, and those are taken that keep most of the differences between places near each
+other (after Gooch et al., Color2Gray, 2005, and Lu et al., Contrast Preserving Decolorization, 2012).
 
 This module alone imports the compiled kernel `mixing`.
 """
@@ -21,18 +21,23 @@ Weights = tuple[float, float, float]
 
 LUMA: Weights = (0.299, 0.587, 0.114)
 
-_BORDER, _SEEN = 8, 48  # lines along a side that may be a rim, and lines that are looked at
-_RIM, _TYPICAL, _STRONG = 0.025, 2.5, 1.5  # a rim's step: at least that, and so much above the picture's own
+_BORDER, _SEEN = 8, 48  # the most lines along a side that are a rim; the lines along a side that are looked at
+# The step of grey at a rim's end is at least _RIM, _TYPICAL times the median step of the lines further in, and _STRONG
+# times the 9th decile of these.
+_RIM, _TYPICAL, _STRONG = 0.025, 2.5, 1.5
 
-_EYE_PT, _CELLS = 3.0, 128  # what the eye takes in at a glance is one cell, and at most so many cells a side
-_OFFSETS = ((0, 1), (1, 0), (2, 1), (-1, 2), (4, 0), (0, 4), (3, -3), (7, 2), (-2, 7), (8, -5))
-_UNSEEN = 0.05  # a difference of 5 units of Lab is none
-_LIGHT, _FAR, _NEGATIVE = 0.25, 0.0625, 0.3  # worth of a lighter grey; prices of being far from luma, and below 0
-_WHOLE = 1 << 20  # sums are of whole numbers: their order is not the same on every machine
+_EYE_PT, _CELLS = 3.0, 128  # side of a cell, which is what the eye takes in at a glance; the most cells along a side
+_OFFSETS = ((0, 1), (1, 0), (2, 1), (-1, 2), (4, 0), (0, 4), (3, -3), (7, 2), (-2, 7), (8, -5))  # cells down, across
+_UNSEEN = 0.05  # hundreds of units of Lab: a difference up to that is none
+_LIGHT, _FAR, _NEGATIVE = 0.25, 0.0625, 0.3  # worth of a lighter grey; prices of weights far from luma's, and below 0
+_WHOLE = 1 << 20  # of 1: differences are added up as whole numbers, whose sum is the same in any order
 
 
 def without_rim(values: npt.NDArray[np.generic], maxval: int) -> npt.NDArray[np.generic]:
-    """The photo (h, w) or (h, w, 3) with up to 8 lines along each side replaced by the next, where a scan has a rim."""
+    """The photo (h, w) or (h, w, 3), 0 … maxval; where a scan has a rim, its lines are replaced by the next one.
+
+    Of each side up to _BORDER lines are a rim, and one more may be mixed with it.
+    """
     result = values
     for side in range(4):
         lines = np.rot90(values, side)[:_SEEN].astype(np.float32) / np.float32(maxval)
@@ -54,7 +59,10 @@ def without_rim(values: npt.NDArray[np.generic], maxval: int) -> npt.NDArray[np.
 
 
 def chosen_mix(colours: Picture, pixels_per_pt: float) -> Weights:
-    """The weights of red, green and blue for colours (h, w, 3), 0 … 1, of which pixels_per_pt are a point on paper."""
+    """The weights of red, green and blue that keep most contrast.
+
+    colours: (h, w, 3), 0 … 1. pixels_per_pt: pixels to a point on paper.
+    """
     height, width = colours.shape[:2]
     cell = max(1.0, _EYE_PT * pixels_per_pt, max(height, width) / _CELLS)
     small = shrunk(colours, max(1, round(width / cell)), max(1, round(height / cell)))
@@ -91,22 +99,22 @@ def chosen_mix(colours: Picture, pixels_per_pt: float) -> Weights:
 
 
 def mixed(colours: Picture, mix: Weights) -> Picture:
-    """Grey (h, w) of colours (h, w, 3), 0 … 1 if they are."""
+    """Grey (h, w), 0 … 1, of colours (h, w, 3), 0 … 1."""
     out = np.empty(colours.shape[:2], np.float32)
     _mixing.mix(np.ascontiguousarray(colours), *mix, out, 0, len(out))
     return out
 
 
 def lab(colours: Picture) -> npt.NDArray[np.float64]:
-    """CIE Lab (h, w, 3) of sRGB (h, w, 3), white D65; by tables and Newton's method, the same on every machine."""
-    steps = [k / 1024 for k in range(1025)]
+    """CIE Lab (h, w, 3), white D65, of sRGB (h, w, 3), 0 … 1."""
+    steps = [k / 1024 for k in range(1025)]  # rounded entries of a table are the same on every machine
     linear = np.array([round(v / 12.92 if v <= 0.04045 else ((v + 0.055) / 1.055) ** 2.4, 12) for v in steps])
     r, g, b = (looked_up(colours[..., k], linear).astype(np.float64) for k in range(3))
     return lab_of_light(np.stack([r, g, b], axis=-1))
 
 
 def _pair(shape: tuple[int, ...], down: int, across: int) -> tuple[tuple[slice, slice], tuple[slice, slice]]:
-    """The cells that have another so far down and across, and those others."""
+    """The cells of a grid (h, w) from which an offset of so many cells leads to a cell of the grid, and those cells."""
     h, w = shape
     a = slice(max(0, -down), h - max(0, down)), slice(max(0, -across), w - max(0, across))
     b = slice(max(0, down), h - max(0, -down)), slice(max(0, across), w - max(0, -across))
@@ -116,11 +124,12 @@ def _pair(shape: tuple[int, ...], down: int, across: int) -> tuple[tuple[slice, 
 
 
 def _squares(difference: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
-    """Squared distance, in which hue and saturation count less than lightness."""
+    """(…,) squares of differences in Lab (…, 3), in which hue and saturation count less than lightness."""
     d = difference * difference
     squares: npt.NDArray[np.float64] = d[..., 0] + 0.6 * d[..., 1] + 0.6 * d[..., 2]
     return squares
 
 
 def _total(values: npt.NDArray[np.float64]) -> int:
+    """The sum of values, in _WHOLE to 1, each rounded down."""
     return int((values * _WHOLE).astype(np.int64).sum())

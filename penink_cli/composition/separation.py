@@ -1,14 +1,15 @@
 """A photograph's colours taken apart into inks that print over one another.
 
-An ink covers a part of the paper, 0 … 1, and where it lies lets through a part of the light, in each of red, green and
-blue, that its colour on white says. Hatching of several inks crosses at random, so what light comes back is the product
-of what each lets through and the paper sends back (Demichel and Neugebauer, 1937, with overprints that multiply)::
+An ink covers a part a of the paper, 0 … 1. Where it lies it lets through a part T of the light, in each of red, green
+and blue; its colour on white says which. Hatching of several inks crosses at random, so the light that comes back is
+the product of the paper's and of what each ink lets through (Demichel and Neugebauer, 1937, with overprints that
+multiply)::
 
     light = paper · Π (1 − aᵢ (1 − Tᵢ))
 
-For each colour those amounts a are looked for that come nearest to it in CIE Lab, by Gauss's and Newton's method
-within 0 … 1, at a grid of colours; between, amounts are interpolated. Of equal ones the least ink is taken, and of
-black ink the share that is asked for of all that it could do.
+The amounts a whose colour comes nearest to a given one in CIE Lab are found by the Gauss-Newton method within 0 … 1, on
+a grid of colours; between its nodes amounts are interpolated. Of amounts that come equally near the least ink is taken.
+Of black ink that share is aimed at that is asked for, of all that black could print.
 """
 
 from __future__ import annotations
@@ -26,16 +27,16 @@ from penink_cli.ground.model import Floats
 
 WHITE: Colour = (1.0, 1.0, 1.0)
 
-_SIDE = 33  # grid points along each of red, green and blue, evenly far apart as they are stored
+_SIDE = 33  # nodes of the grid along each of red, green and blue, at even steps of the stored values
 _NODES = _SIDE * _SIDE * _SIDE
 _DARKEST, _NEUTRAL = 35.0, 15.0  # lightness and chroma up to which an ink is black
-LEAST = 0.004  # the least that an ink lets through: none is perfect, and logarithms of it exist
-#: Prices, as squared distances in Lab: of one ink all over, of all black too much or too little.
+LEAST = 0.004  # the least part of the light that an ink lets through: no ink is perfect
+#: Prices, as squared distances in Lab: of one ink solid everywhere; of black that is off its aim by a solid layer.
 _INK, _BLACK = 0.05, 4.0
 #: The amount from which on an ink is laid solid. Less of it is a tint: other inks, and the paper, show through.
 SOLID = 0.985
-_TRIES = 30
-_STARTS = (0.1, 0.5, 0.95)
+_TRIES = 30  # steps of the search
+_STARTS = (0.1, 0.5, 0.95)  # amounts of all inks that the search begins with, in turn
 
 
 def amounts(
@@ -45,10 +46,10 @@ def amounts(
     paper: Colour = WHITE,
     black: float = 0.8,
 ) -> Floats:
-    """How much of each ink (n, h, w), 0 … 1, makes a picture.
+    """How much of each ink (n, h, w), 0 … 1, prints a picture.
 
-    values: (h, w, 3) or (h, w) grey, 0 … maxval, sRGB. black: the share of what black ink could do of a colour that it
-    is to do.
+    values: (h, w, 3) or (h, w) grey, 0 … maxval, sRGB's. inks, paper: red, green and blue, 0 … 1. black: the share, of
+    the grey in a colour that black ink could print, that it is to print.
     """
     places, cells = _places(values, maxval)
     corners = np.unique(np.unique(cells)[None] + _CORNERS[:, None])
@@ -69,7 +70,7 @@ _CORNERS = np.array([(k & 1) + _SIDE * (k >> 1 & 1) + _SIDE * _SIDE * (k >> 2) f
 
 
 def _places(values: npt.NDArray[np.unsignedinteger], maxval: int) -> tuple[Floats, npt.NDArray[np.int64]]:
-    """Where colours lie in their cell (h, w, 3), 0 … 1 each way, and the number of its first node (h, w)."""
+    """Where each colour lies in its cell of the grid (h, w, 3), 0 … 1, and the number of its first node (h, w)."""
     if values.ndim == 2:
         values = np.repeat(values[..., None], 3, axis=2)
     scaled = values * ((_SIDE - 1) / maxval)
@@ -79,14 +80,14 @@ def _places(values: npt.NDArray[np.unsignedinteger], maxval: int) -> tuple[Float
 
 @lru_cache(4)
 def _at_nodes(nodes: tuple[int, ...], inks: tuple[Colour, ...], paper: Colour, black: float) -> Floats:
-    """Amounts (n, m) at nodes of the grid of colours; the plates of one picture ask for the same."""
+    """Amounts (n, m) at nodes of the grid. They are kept: each plate of a picture asks for the same nodes."""
     number = np.array(nodes, np.int64)
     stored = np.stack([number % _SIDE, number // _SIDE % _SIDE, number // (_SIDE * _SIDE)], axis=1) / (_SIDE - 1)
     return solved(linear(stored), inks, paper, black)
 
 
 def printed(amount: Floats, inks: Sequence[Colour], paper: Colour = WHITE) -> Floats:
-    """The light (…, 3) of inks that cover so much (n, …)."""
+    """The light (…, 3), linear, 0 … 1, of inks that cover so much (n, …), 0 … 1."""
     light = np.broadcast_to(linear(paper), (*amount.shape[1:], 3)).copy()
     for share, passed in zip(amount, _passed(inks), strict=True):
         light *= 1.0 - share[..., None] * (1.0 - passed)
@@ -94,23 +95,23 @@ def printed(amount: Floats, inks: Sequence[Colour], paper: Colour = WHITE) -> Fl
 
 
 def _passed(inks: Sequence[Colour]) -> Floats:
-    """What each ink (n, 3) lets through."""
+    """The part (n, 3) of red, green and blue light that each ink lets through."""
     return np.asarray(np.maximum(linear(np.array(inks)), LEAST))
 
 
 def is_black(ink: Colour) -> bool:
-    """Whether an ink is dark and has no colour."""
+    """Whether an ink is dark and nearly without hue."""
     lightness, a, b = lab_of_light(linear(np.array(ink))).tolist()
     return bool(lightness <= _DARKEST and a * a + b * b <= _NEUTRAL**2)
 
 
 def solved(light: Floats, inks: Sequence[Colour], paper: Colour = WHITE, black: float = 0.8) -> Floats:
-    """Amounts (n, m), 0 … 1, that come nearest to colours of that light (m, 3)."""
+    """Amounts (n, m), 0 … 1, that come nearest to colours of that light (m, 3), linear; as `amounts`."""
     passed = _passed(inks)
     wanted = lab_of_light(light)
     keys = [i for i, ink in enumerate(inks) if is_black(ink)][:1] if len(inks) > 1 else []
     aim = np.zeros(len(light))
-    if keys:  # all that black could do: the most of it that takes no more of any of the three than is to go
+    if keys:  # all that black could print: the most of it that leaves red, green and blue no darker than the colour
         over = 1.0 - light / linear(paper)
         aim = over[:, 0] / (1.0 - passed[keys[0], 0])
         for channel in (1, 2):
@@ -131,7 +132,11 @@ def solved(light: Floats, inks: Sequence[Colour], paper: Colour = WHITE, black: 
 def _descended(
     amount: Floats, passed: Floats, paper: Floats, wanted: Floats, keys: list[int], aim: Floats
 ) -> tuple[Floats, Floats]:
-    """Amounts (n, m) from where the cost (m,) is not to be lowered by a small step, and that cost."""
+    """Amounts (n, m) after _TRIES steps down the cost, by Levenberg and Marquardt's method, and the cost (m,).
+
+    passed: (n, 3), as of `_passed`. paper: (3,) light. wanted: (m, 3) Lab. keys: the number of the black ink, if any.
+    aim: (m,) the amount of black aimed at.
+    """
     n, m = amount.shape
     damping = np.full(m, 1.0)
     cost = _cost(amount, passed, paper, wanted, keys, aim)
@@ -155,6 +160,7 @@ def _descended(
 
 
 def _cost(amount: Floats, passed: Floats, paper: Floats, wanted: Floats, keys: list[int], aim: Floats) -> Floats:
+    """(m,) the squared distance in Lab and the prices of ink and of black; as `_descended`."""
     total = np.zeros(len(wanted))
     for share in amount:
         total += _INK * share
@@ -165,7 +171,7 @@ def _cost(amount: Floats, passed: Floats, paper: Floats, wanted: Floats, keys: l
 
 
 def _light(amount: Floats, passed: Floats, paper: Floats | float = 1.0) -> Floats:
-    """The light (m, 3) of amounts (n, m)."""
+    """The light (m, 3), linear, of amounts (n, m)."""
     light = np.ones((amount.shape[1], 3)) * paper
     for share, through in zip(amount, passed, strict=True):
         light *= 1.0 - share[:, None] * (1.0 - through)
@@ -173,7 +179,7 @@ def _light(amount: Floats, passed: Floats, paper: Floats | float = 1.0) -> Float
 
 
 def slopes(amount: Floats, passed: Floats, paper: Floats | float = 1.0) -> list[Floats]:
-    """What Lab (m, 3) changes by with each of the amounts (n, m) of inks that let that much (n, 3) through."""
+    """Of each ink the derivatives of Lab (m, 3) by its amount; passed: (n, 3), as of `_passed`."""
     light = _light(amount, passed, paper)
     tristimulus = [r * light[:, 0] + g * light[:, 1] + b * light[:, 2] for r, g, b in XYZ]
     rise = []
@@ -193,7 +199,11 @@ def slopes(amount: Floats, passed: Floats, paper: Floats | float = 1.0) -> list[
 def _equations(
     square: list[list[Floats]], right: list[Floats], held: list[npt.NDArray[np.bool_]], damping: Floats
 ) -> Floats:
-    """Solutions (n, m) of symmetric equations by Cholesky's way, unknowns that are held being 0."""
+    """Solutions (n, m) of m systems of n symmetric equations, by Cholesky's method; unknowns that are held are 0.
+
+    square: the lower triangle, (m,) each. right: n right sides (m,). held: n masks (m,). damping: (m,) added to the
+    diagonal.
+    """
     n = len(right)
     low = [[np.where(held[i] | held[k], 0.0, square[i][k]) for k in range(i + 1)] for i in range(n)]
     right = [np.where(held[i], 0.0, right[i]) for i in range(n)]
@@ -215,15 +225,16 @@ def _equations(
 
 
 def _dot(a: Floats, b: Floats) -> Floats:
-    """(m,) of (m, 3) each."""
+    """(m,) scalar products of rows (m, 3)."""
     return np.asarray(a[:, 0] * b[:, 0] + a[:, 1] * b[:, 1] + a[:, 2] * b[:, 2])
 
 
 def turns(apart: Sequence[float], n: int) -> list[float]:
-    """Degrees by which n inks' hatching is turned so that no two of its directions are near each other.
+    """Degrees by which each of n inks' hatching is turned, so that no two of all directions are near each other.
 
-    apart: what each layer of the hatching is turned from the first one. Each ink takes, of 72 angles, the one whose
-    directions are farthest from all others; where no such is left at 15°, the first layers' alone are looked at.
+    apart: degrees by which each layer of the hatching is turned from the first one. One ink after the other takes, of
+    72 angles, the one whose directions are farthest from those of the inks before it. Where the best one is nearer than
+    15°, only the first layers' directions count.
     """
     found = [0.0]
     others = [0.0, *(a for a in apart if a % 180)]
@@ -236,12 +247,12 @@ def turns(apart: Sequence[float], n: int) -> list[float]:
 
 
 def _gap(turn: float, found: list[float], others: list[float]) -> float:
-    """The least angle, modulo 180°, between a direction of an ink that is turned so and one of those found."""
+    """The least angle, modulo 180°, between a direction of an ink with that turn and one of the inks found."""
     angles = [(turn + a - b - c) % 180 for a in others for b in others for c in found]
     return min(min(a, 180 - a) for a in angles)
 
 
 def lightest_first(inks: Sequence[Colour]) -> list[int]:
-    """Numbers of the inks, the lightest first: it goes on paper first, and its pen is not soiled by another's ink."""
+    """Numbers of the inks, the lightest first. Drawn first, its pen is not soiled by darker inks."""
     lightness = [lab_of_light(linear(np.array(ink))).tolist()[0] for ink in inks]
     return sorted(range(len(inks)), key=lambda i: -lightness[i])

@@ -30,7 +30,7 @@ from penink_cli.formats._compiled import cuts as _cuts
 from penink_cli.formats._compiled import samples as _samples
 from penink_cli.formats._compiled.coder import Coder
 from penink_cli.formats._compiled.samples import FITTED_LEVELS, FITTED_SAMPLES
-from penink_cli.formats.members import check_end, finished, header, written_numbers
+from penink_cli.formats.members import check_end, finished, header, size_class, within, written_numbers
 from penink_cli.ground.errors import FormatError, LimitError
 from penink_cli.ground.model import Directions, EdgeList, Floats, GreyImage, Ints
 
@@ -233,8 +233,8 @@ def _code_angles(coder: Coder, nearest: Ints, count: int) -> None:
             guess = (2 * (west + north) + north_east - north_west + 2) >> 2
             rough = abs(west - north_west) + abs(north - north_west) + abs(north - north_east)
             near = last[j + 1] + last[j + 2] + before[j]
-            aside = 7 * _within_3(west - guess) + _within_3(north - guess)
-            turn = coder.number(_turn(given[j] - guess, count), _TURN, 12 * _size(near) + _size(rough), aside)
+            aside = 7 * within(west - guess, 3) + within(north - guess, 3)
+            turn = coder.number(_turn(given[j] - guess, count), _TURN, 12 * size_class(near) + size_class(rough), aside)
             row[j + 1] = (guess + turn) % count
             before[j + 1] = min(count, abs(turn))
         above = row
@@ -244,13 +244,3 @@ def _code_angles(coder: Coder, nearest: Ints, count: int) -> None:
 def _turn(steps: int, count: int) -> int:
     """A turn of so many steps, brought between −count / 2 and count / 2."""
     return (steps + count // 2) % count - count // 2
-
-
-def _size(value: int) -> int:
-    """The class of a size, 0 … 11, finer for small sizes."""
-    return value if value < 6 else min(11, 6 + (value - 6) // 4)
-
-
-def _within_3(value: int) -> int:
-    """The value, within ±3, counted from 0: 0 … 6."""
-    return max(-3, min(3, value)) + 3

@@ -20,7 +20,7 @@ import numpy.typing as npt
 
 from penink_cli.formats import lines as lines_format
 from penink_cli.formats._compiled.coder import Coder
-from penink_cli.formats.members import MAX_GRID, check_end, finished, header, written_numbers
+from penink_cli.formats.members import MAX_GRID, check_end, finished, header, size_class, within, written_numbers
 from penink_cli.geometry import curves
 from penink_cli.ground.errors import FormatError, LimitError
 from penink_cli.ground.model import Floats, Ints, Lines
@@ -264,9 +264,9 @@ def _code_path(coder: Coder, path: list[list[int]], columns: int, rows: int) -> 
         if k == 1:
             a, b = coder.number(a, _MAIN), coder.number(b, _ASIDE)
         else:
-            main = coder.number(back * (a - ga), _MAIN_TURN, _size(main) * 12 + _size(aside), _size(gb))
+            main = coder.number(back * (a - ga), _MAIN_TURN, size_class(main) * 12 + size_class(aside), size_class(gb))
             a = ga + back * main
-            aside = coder.number(b - gb, _ASIDE_TURN, _within(aside) * 12 + _size(main), _size(gb))
+            aside = coder.number(b - gb, _ASIDE_TURN, within(aside, 10) * 12 + size_class(main), size_class(gb))
             b = gb + aside
         bx, by = (b, a) if swap else (a, b)
         x, y = x + bx, y + by
@@ -281,17 +281,6 @@ def _code_weights(coder: Coder, weights: list[int]) -> None:
     for k in range(len(weights)):
         if coder.overrun:
             return
-        step = coder.number(weights[k] - last, _PRESS if k else _WEIGHT, _within(step), last)
+        step = coder.number(weights[k] - last, _PRESS if k else _WEIGHT, within(step, 10), last)
         last = weights[k] = last + step
         _check_weight(last, _STEPS[LINES_1].weight)
-
-
-def _size(value: int) -> int:
-    """The class of a size, 0 … 11, finer for small sizes."""
-    value = abs(value)
-    return value if value < 6 else min(11, 6 + (value - 6) // 4)
-
-
-def _within(value: int) -> int:
-    """The value, within ±10, counted from 0: 0 … 20."""
-    return max(-10, min(10, value)) + 10

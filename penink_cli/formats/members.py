@@ -46,6 +46,17 @@ def is_compact(data: bytes, known: tuple[bytes, ...]) -> bool:
     return False
 
 
+def size_class(value: int) -> int:
+    """The class of a number's size, 0 … 11, finer for small sizes: a context of other numbers."""
+    size = abs(value)
+    return size if size < 6 else min(11, 6 + (size - 6) // 4)
+
+
+def within(value: int, most: int) -> int:
+    """The value, held within ±most and counted from 0: 0 … 2 · most, a context of other numbers."""
+    return max(-most, min(most, value)) + most
+
+
 def header(data: bytes, magic: bytes, count: int) -> tuple[list[int], bytes]:
     """The whole numbers after the magic bytes, and the code that follows them.
 

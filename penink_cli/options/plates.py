@@ -24,7 +24,7 @@ class PlateFiles(OutputFile):
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> str:
         """The name as given."""
         if str(value).count(PLACE) != 1:
-            self.fail(f"{in_quotes(str(value))} has not just one {PLACE} for the plate's number", param, ctx)
+            self.fail(f"{in_quotes(str(value))} has no {PLACE} for the number, or several", param, ctx)
         return str(super().convert(value, param, ctx))
 
 

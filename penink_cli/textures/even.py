@@ -1,8 +1,8 @@
 """Placing things on a torus so that every prefix of them is evenly spread.
 
-Greedy: of many random candidates the next is the one that lies in the emptiest place. How empty a
-place is, a potential tells: the sum over all ink so far of a kernel that falls off with distance,
-1/r, softened. It does so on all scales at once: the first ten and the first thousand are both even.
+Greedy: of many random candidates the one in the emptiest place is next. How empty a place is, is measured by a
+potential: the sum over all ink so far of a kernel that falls off with distance as 1/r, softened. It works on all scales
+at once: the first ten and the first thousand are both even.
 """
 
 from __future__ import annotations
@@ -13,7 +13,10 @@ from penink_cli.ground.model import Floats
 
 
 class Torus:
-    """The potential on a width × height torus, kept on a grid of about one point."""
+    """The potential on a torus of width × height points.
+
+    soft: the distance, points, below which the kernel hardly rises. grid: step, points, of the grid that holds it.
+    """
 
     def __init__(self, width: float, height: float, soft: float, grid: float = 1.0):
         self.columns = max(8, round(width / grid))
@@ -24,25 +27,25 @@ class Torus:
         dx = np.minimum(np.arange(self.columns), self.columns - np.arange(self.columns)) / self.scale[0]
         r2 = dy[:, None] ** 2 + dx[None, :] ** 2
         kernel = 1.0 / np.sqrt(r2 + soft * soft)
-        # nothing is felt from half a tile away on: there the torus would pull towards itself
+        # The kernel ends half a tile away: beyond, ink would count twice, once from each side of the torus.
         far = min(width, height) / 2
         kernel = np.maximum(kernel - 1.0 / far, 0.0)
-        # doubled both ways, so that a kernel moved round the torus is a plain window of it
+        # Doubled both ways, so that the kernel moved round the torus is a window of it.
         self.kernel = np.tile(kernel, (2, 2))
 
     def cells(self, points: Floats) -> tuple[np.ndarray, np.ndarray]:
-        """Row and column of the cell of each point (…, 2), round the torus."""
+        """Rows and columns (…,) of the cells of points (…, 2), which may lie anywhere: the torus closes."""
         at = np.floor(points * self.scale).astype(np.int64)
         return at[..., 1] % self.rows, at[..., 0] % self.columns
 
     def emptiest(self, candidates: Floats) -> int:
-        """Which of candidates (c, p, 2), p points each, lies where there is least."""
+        """The number of the candidate where the potential is least; candidates: (c, p, 2), p points each."""
         rows, columns = self.cells(candidates)
         felt = self.field[rows, columns]
         return int(np.argmin(felt.sum(axis=1)))
 
     def add(self, points: Floats, weight: float) -> None:
-        """Put weight of ink on points (p, 2), in equal shares."""
+        """Put ink on points (p, 2), an equal share of the weight on each."""
         rows, columns = self.cells(points)
         share = weight / len(points)
         for r, c in zip(rows.tolist(), columns.tolist(), strict=True):

@@ -1,4 +1,4 @@
-"""Filling a tile with strokes of which every prefix is evenly spaced, until it is as good as black."""
+"""Filling a tile with strokes, every prefix of them evenly spaced, until it is nearly black."""
 
 from __future__ import annotations
 
@@ -13,34 +13,38 @@ from penink_cli.ground.device import MEAN
 from penink_cli.ground.model import Floats, HatchLayer, Scales, Strokes, Texture
 from penink_cli.textures.even import Torus
 
-TILE_PT = 144.0
-#: What a full tile covers, at the least.
-FULL = 0.978
-#: A stroke paints a little more than its pen is wide: what a device of 600 dpi, whose pixel is so wide, adds.
-PIXEL_PT = 72 / 600
-GAIN_PT = MEAN * PIXEL_PT
+TILE_PT = 144.0  # side of a tile of hatching
+FULL = 0.978  # the part of a full tile that is covered
+PIXEL_PT = 72 / 600  # side of a pixel of the printer that tiles are filled for
+GAIN_PT = MEAN * PIXEL_PT  # by which that printer widens a stroke
+#: Of textures that grow: the width of the picture that they are made for; least side of a tile; largest scale.
+NATURAL_PT, LEAST_PT, MOST_SCALE = 288.0, 6.0, 1000.0
 
+#: Makes so many candidates (n, 3k + 1, 2) at random.
 Maker = Callable[[np.random.Generator, int], Floats]
 
 
 def bowed_line(centre: Floats, angle: Floats, length: Floats, bow: Floats) -> Floats:
-    """Cubics (n, 4, 2): straight strokes about centre (n, 2), their middle pushed sideways by bow."""
+    """Cubics (n, 4, 2): strokes about centre (n, 2), their middle pushed sideways by bow (n,).
+
+    angle: (n,) degrees, clockwise from the right. length: (n,) points.
+    """
     along = np.array([direction(a) for a in angle.tolist()])
     half = along * length[:, None] / 2
     across = np.column_stack([-along[:, 1], along[:, 0]]) * bow[:, None]
     ends = np.stack([centre - half, centre - half / 3, centre + half / 3, centre + half], axis=1)
     return ends + np.stack([-across / 3, across, across, -across / 3], axis=1)
-#: Of textures that grow: the width of the picture that they are made for; least side of a tile; largest scale.
-NATURAL_PT, LEAST_PT, MOST_SCALE = 288.0, 6.0, 1000.0
 
 
 def fill(
     torus: Torus, candidates: Maker, pen: float, until: float, reached: float, choices: int, rng: np.random.Generator
 ) -> list[Floats]:
-    """Strokes (each (3k + 1, 2)), the emptiest of so many choices each time, from coverage reached to until.
+    """Strokes (3k + 1, 2) that bring the tile's coverage from `reached` to `until`, each the emptiest of its choices.
 
-    Coverage is counted on the grid of the torus, a stroke leaving bare of each cell it runs through what is not its
-    share of it: right for strokes that lie as they please, and a little pessimistic for these, which keep apart.
+    torus: filled with the strokes' ink. candidates: makes the choices. pen: width of a stroke, points, with the gain.
+
+    Coverage is counted in the cells of the torus. A stroke covers its share of what is bare in each cell that it runs
+    through: right for strokes that lie at random, a little too small for these, which keep apart.
     """
     bare = np.full((torus.rows, torus.columns), 1.0 - reached)
     cell = float(1.0 / (torus.scale[0] * torus.scale[1]))
@@ -63,7 +67,7 @@ def fill(
 
 
 def along_curve(strokes: Floats) -> Floats:
-    """Samples (n, p, 2) of chains (n, 3k + 1, 2), about one a point of length; a dot is its own sample."""
+    """Points (n, p, 2) along chains (n, 3k + 1, 2), about one to a point of length; a dot is its own."""
     k = (strokes.shape[1] - 1) // 3
     if k == 0:
         return strokes
@@ -87,7 +91,7 @@ def tile(
     name: str, strokes: list[Floats], widths: list[float], width: float, height: float, seed: int, whole: bool = False,
     layers: tuple[HatchLayer, ...] = (),
 ) -> Texture:  # fmt: skip
-    """A texture of strokes in order of priority, in hundredths of a point."""
+    """A texture of strokes (3k + 1, 2) each, the first to be drawn first; coordinates are rounded to .01 pt."""
     first = np.zeros(len(strokes) + 1, np.int64)
     np.cumsum([len(s) for s in strokes], out=first[1:])
     points: Floats = np.round(np.concatenate(strokes), 2).astype(np.float64)
@@ -99,7 +103,10 @@ def growing(
     name: str, strokes: list[Floats], from_scale: list[float], rest: list[Floats], pen: float, width: float,
     height: float, seed: int,
 ) -> Texture:  # fmt: skip
-    """A tile whose strokes grow with the picture, each from a scale on, and the rest, of one size, after them."""
+    """A tile whose strokes grow with the picture; `rest` are strokes that do not, drawn after them.
+
+    from_scale: for each stroke the scale of the picture from which on it is there.
+    """
     whole = tile(name, [*strokes, *rest], [pen] * (len(strokes) + len(rest)), width, height, seed, whole=True)
     first = np.round(np.array(from_scale), 4)
     spans = np.column_stack([first, np.full(len(first), MOST_SCALE)])

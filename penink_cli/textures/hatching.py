@@ -1,6 +1,6 @@
 """Straight or wavy hatching in up to four directions, one layer after the other.
 
-The tile is an instance of its layers (`HatchLayer`), which blasting prefers to it.
+The tile is an instance of its layers (`HatchLayer`). Blasting lays the layers themselves where its rule can.
 """
 
 from __future__ import annotations
@@ -16,10 +16,10 @@ from penink_cli.textures.even import Torus
 from penink_cli.textures.filling import FULL, GAIN_PT, TILE_PT, along_curve, bowed_line, fill, tile
 from penink_cli.textures.normal import normal
 
-#: Tones at which the layers end. The next one begins a little before.
+#: By the number of layers, the tones at which they end. Each begins LAP below the end of the one before.
 LAYER_ENDS = {1: (0.99,), 2: (0.5, 0.99), 3: (0.42, 0.7, 0.99), 4: (0.42, 0.66, 0.83, 0.99)}
 LAP = 0.04
-#: Angles of the layers, from that of the first.
+#: Degrees by which each layer is turned from the first.
 LAYER_TURNS = (0.0, 90.0, 45.0, 135.0)
 
 
@@ -36,7 +36,11 @@ def hatching(
     ends: tuple[float, ...] = (),
     lap: float = LAP,
 ) -> Texture:
-    """Straight or wavy strokes in one to four directions, one layer after the other."""
+    """Hatching of `count` layers, one to four, the first at that angle (degrees, clockwise from the right).
+
+    pen, spacing: points; spacing 0 for no limit. wave, wave_length: how far lines wander sideways, and over what
+    length, points. turns, ends, lap: as LAYER_TURNS, an entry of LAYER_ENDS and LAP, which they replace.
+    """
     rng = np.random.default_rng(seed)
     ends = ends or LAYER_ENDS[count]
     layers = []
@@ -67,7 +71,7 @@ def hatching(
 
 
 def wavy(stroke: Floats, angle: float, wave: float, wave_length: float) -> Floats:
-    """A chain pushed sideways by a wave along its direction, which repeats with the tile."""
+    """A chain (3k + 1, 2) pushed sideways by a wave along its direction; the wave repeats with the tile."""
     c, s = direction(angle)
     across = np.array([-s, c])
     p = along_curve(stroke[None])[0]

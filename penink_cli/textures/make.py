@@ -12,15 +12,15 @@ from penink_cli.ground.model import Texture
 
 
 def maker(kind: str) -> Callable[..., Texture]:
-    """What makes textures of a kind; its keywords are told in `kinds`."""
+    """The function that makes textures of a kind; `kinds` describes its keywords."""
     found: Callable[..., Texture] = importlib.import_module(f"penink_cli.textures.kinds.{kind.replace('-', '_')}").make
     return found
 
 
 def make(kind: str, **options: Any) -> Texture:
-    """A texture of a kind of the registry, by default as it is shipped; an option that is None is not given.
+    """A texture of a kind of the registry; without options, the shipped one. An option of None is not given.
 
-    Raises ParameterError for an option that the kind does not take, and where options do not go together.
+    Raises ParameterError for an option that the kind does not take, and for options that do not go together.
     """
     make_kind = maker(kind)
     known = [name for name, p in inspect.signature(make_kind).parameters.items() if p.kind is p.KEYWORD_ONLY]

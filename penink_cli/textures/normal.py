@@ -1,7 +1,7 @@
 """Normal deviates without the C library, whose logarithm may differ in its last bit from machine to machine.
 
-The ziggurat of Marsaglia and Tsang (2000) in 256 layers, as numpy's generators have it, which stand on the C library
-where a deviate falls beside the layers' cores: the same deviates from the same seeds.
+The ziggurat of Marsaglia and Tsang (2000) in 256 layers, with the same deviates from the same seeds as numpy's
+generators. These call the C library for a deviate that falls beside the layers' cores.
 """
 
 from __future__ import annotations
@@ -16,12 +16,12 @@ from penink_cli.ground.model import Floats
 
 LAYERS = 256
 TAIL, AREA = 3.6541528853610087963519472518, 0.004928673233974655  # where the tail begins; the area of each layer
-MANTISSA = 2**52
+MANTISSA = 2**52  # steps of the mantissa of a draw
 
 
 @functools.cache
 def _layers() -> tuple[list[int], list[float], list[float]]:
-    """Of each layer: below which mantissa a deviate is within the core, the step of a mantissa, the density."""
+    """Of each layer: the mantissa below which a deviate lies in the core, the width of a step, the density."""
     density = float(exact.exp(-0.5 * TAIL * TAIL))
     cores, steps, densities = [0] * LAYERS, [0.0] * LAYERS, [1.0] * LAYERS
     cores[0], steps[0] = int(TAIL / (AREA / density) * MANTISSA), AREA / density / MANTISSA
@@ -36,13 +36,14 @@ def _layers() -> tuple[list[int], list[float], list[float]]:
 
 
 def normal(rng: np.random.Generator, deviation: float, shape: int | tuple[int, ...]) -> Floats:
-    """Deviates of that shape, of mean 0."""
+    """Normal deviates of that shape, of mean 0 and that standard deviation."""
     tables = _layers()
     count = math.prod(shape) if isinstance(shape, tuple) else shape
     return deviation * np.array([_one(rng, *tables) for _ in range(count)]).reshape(shape)
 
 
 def _one(rng: np.random.Generator, cores: list[int], steps: list[float], densities: list[float]) -> float:
+    """A deviate of mean 0 and standard deviation 1."""
     draw = rng.bit_generator.random_raw
     while True:
         bits = int(draw())
@@ -58,7 +59,7 @@ def _one(rng: np.random.Generator, cores: list[int], steps: list[float], densiti
 
 
 def _beyond(rng: np.random.Generator) -> float:
-    """A deviate from the tail on."""
+    """A deviate above TAIL."""
     while True:
         x = -float(exact.log(1.0 - rng.random())) / TAIL
         y = -float(exact.log(1.0 - rng.random()))

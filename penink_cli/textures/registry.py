@@ -1,7 +1,7 @@
 """The kinds of texture that can be made, all of which come with the program.
 
-A line here and its module in `kinds/`, `contour-rings` in contour_rings.py, make a kind. `make manual` packs its tile
-into `tiles/`; until then it is made whenever it is asked for.
+A line here and a module in `kinds/` make a kind; that of `contour-rings` is contour_rings.py. `make manual` packs the
+kind's tile into `tiles/`; until then the tile is made whenever it is asked for.
 """
 
 #: Name -> what it is like.

@@ -1,7 +1,7 @@
-"""Oriented stroke sets: a few examples each, as a hand draws them from left to right, for strokes that follow a field.
+"""Oriented stroke sets: a few examples of strokes, drawn from left to right, that are bent along a field.
 
-An example's first point lies on a line of the field and +x leads along it, downwards where it is steep: fur and hair
-are drawn from the root, blades of grass from the tip.
+An example's first point lies on a line of the field and +x leads along that line, downwards where it is steep. Fur and
+hair are drawn from the root, blades of grass from the tip.
 """
 
 from __future__ import annotations
@@ -13,17 +13,17 @@ import numpy as np
 
 from penink_cli.ground.model import Floats, Strokes, Texture
 
-SHORTEST_PT = 1.0  # of what leads anywhere
+SHORTEST_PT = 1.0  # a stroke that leads less far along x cannot be an example
 
 
 def oriented(name: str, examples: Iterable[Sequence[float]], pen_pt: float) -> Texture:
-    """A set of examples, each x, y of the control points of a chain of cubics, in points."""
+    """A set of examples drawn with one pen, each x, y, x, y … of the control points of a chain of cubics, points."""
     chains = [np.array(points, np.float64).reshape(-1, 2) for points in examples]
     return _texture(name, chains, [pen_pt] * len(chains))
 
 
 def as_set(drawing: Texture) -> tuple[Texture, int]:
-    """The strokes of a drawing as examples, from left to right, and how many were left out as leading nowhere."""
+    """The strokes of a drawing as examples, each from left to right, and how many lead too little and are left out."""
     strokes = drawing.strokes
     examples, widths = [], []
     for i in range(len(strokes)):
@@ -37,7 +37,7 @@ def as_set(drawing: Texture) -> tuple[Texture, int]:
 
 
 def _texture(name: str, examples: list[Floats], widths: list[float]) -> Texture:
-    """Examples one below the other, so that they can be looked at."""
+    """The texture of these examples, which lie one below the other in its tile, so that they can be looked at."""
     laid, y, wide = [], 0.0, 0.0
     for points in examples:
         low, high = points.min(axis=0), points.max(axis=0)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import struct
 
 import pytest
@@ -26,6 +27,12 @@ def test_a_valid_file_is_read(reader):
         READERS[reader](data)
 
 
+@functools.cache
+def kept_seeds(reader: str) -> tuple[bytes, ...]:
+    """The same ones in every example: some are made of random numbers that go on from call to call."""
+    return tuple(seeds(reader))
+
+
 @pytest.mark.parametrize("reader", READERS)
 @given(st.data())
 def test_any_bytes_are_a_value_or_one_clean_error(reader, data):
@@ -33,7 +40,7 @@ def test_any_bytes_are_a_value_or_one_clean_error(reader, data):
     if data.draw(st.booleans()):
         judge(reader, data.draw(st.binary(max_size=60)))
         return
-    text = bytearray(data.draw(st.sampled_from(list(seeds(reader)))))
+    text = bytearray(data.draw(st.sampled_from(kept_seeds(reader))))
     for _ in range(data.draw(st.integers(1, 4))):
         at = data.draw(st.integers(0, len(text)))
         text[at : at + data.draw(st.integers(0, 3))] = data.draw(

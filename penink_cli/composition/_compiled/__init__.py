@@ -1,1 +1,1 @@
-"""Compiled loops of composition."""
+"""Kernels of composition."""

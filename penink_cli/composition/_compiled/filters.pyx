@@ -1,7 +1,8 @@
 # cython: boundscheck=False, wraparound=False, cdivision=True
-"""Loops over rows of a picture: means of areas, separable symmetric filters, linear enlarging.
+"""Loops over the rows of a picture: means over areas, separable symmetric filters, linear enlarging.
 
-Every number is a sum in one fixed order, whatever rows a call is given, so threads may share the rows as they like.
+Each number is a sum in one fixed order, whichever rows a call is given, so the bytes do not depend on how threads share
+the rows.
 """
 
 from libc.stdlib cimport free, malloc
@@ -37,7 +38,7 @@ ctypedef fused stored:
 
 
 def take_lanes(int wanted) -> int:
-    """Take the make for vectors of so many bytes, 16 or 32, or what this processor has: the same numbers by both."""
+    """Use vectors of so many bytes, 16 or 32, or the most that this processor has; the numbers are the same."""
     global lanes
     lanes = min(wanted, best_lanes())
     return lanes
@@ -51,7 +52,7 @@ def shrink(
 ):
     """Rows top … bottom of out (h, w, channels): the means of values (H, W, channels) over each pixel, times scale.
 
-    whole: what values that are no fractions are divided by first.
+    whole: divides values that are whole numbers, before anything else.
     """
     cdef Py_ssize_t rows = values.shape[0], columns = values.shape[1], channels = values.shape[2]
     cdef Py_ssize_t h = out.shape[0], w = out.shape[1], long_row = columns * channels
@@ -62,7 +63,7 @@ def shrink(
     cdef float *sums = <float *>malloc((long_row + most) * sizeof(float))
     cdef float *row_parts = sums + long_row
     cdef stored **covered = <stored **>malloc(most * sizeof(void *))
-    # of each pixel of a row: the first of its columns, and where their parts begin, which are the same in all rows
+    # For each pixel of a row its first column, and the place in `parts` of its columns' parts: the same in all rows.
     cdef Py_ssize_t *begin = <Py_ssize_t *>malloc((2 * w + 1) * sizeof(Py_ssize_t))
     cdef float *parts = <float *>malloc((columns + 2 * w) * sizeof(float))
     cdef Py_ssize_t *column = begin + w + 1
@@ -80,7 +81,7 @@ def shrink(
             column[x], begin[x] = first, q
             for k in range(first, last + 1):
                 part = <float>(min(high, k + 1.0) - max(low, <double>k))
-                if part > 0:  # nothing of the last one may be in it
+                if part > 0:  # the last column may only touch the pixel
                     parts[q] = part
                     q += 1
         begin[w] = q
@@ -120,7 +121,7 @@ def shrink(
 
 
 cdef inline Py_ssize_t within(Py_ssize_t i, Py_ssize_t n) noexcept nogil:
-    """The frame mirrored at its sides, as often as needed."""
+    """The place from 0 to n - 1 that place i falls on when the frame is mirrored at its sides, as often as needed."""
     cdef Py_ssize_t period = 2 * n
     i = i % period
     if i < 0:
@@ -129,7 +130,7 @@ cdef inline Py_ssize_t within(Py_ssize_t i, Py_ssize_t n) noexcept nogil:
 
 
 def across(const float[:, ::1] values, float[::1] weights, float[:, ::1] out, Py_ssize_t top, Py_ssize_t bottom):
-    """Rows top … bottom of out (h, w): values filtered along rows by weights, the middle one first, mirrored."""
+    """Rows top … bottom of out (h, w): values (h, w) filtered along rows; weights: (n,) from the middle outwards."""
     cdef Py_ssize_t w = values.shape[1], n = weights.shape[0], y, x, k
     cdef float *wide = <float *>malloc((w + 2 * n) * sizeof(float))
     cdef float *middle = wide + n
@@ -154,7 +155,7 @@ def across(const float[:, ::1] values, float[::1] weights, float[:, ::1] out, Py
 
 
 def down(const float[:, ::1] values, float[::1] weights, float[:, ::1] out, Py_ssize_t top, Py_ssize_t bottom):
-    """Rows top … bottom of out (h, w): values filtered along columns by weights, the middle one first, mirrored."""
+    """Rows top … bottom of out (h, w): values (h, w) filtered along columns; weights: (n,) from the middle outwards."""
     cdef Py_ssize_t h = values.shape[0], w = values.shape[1], n = weights.shape[0], y, k
     cdef const float **before = <const float **>malloc(2 * n * sizeof(void *))
     cdef const float **after = before + n
@@ -178,7 +179,7 @@ def enlarge(const float[:, ::1] values, float[:, ::1] out, Py_ssize_t top, Py_ss
     cdef float *row
     cdef float *mixed = <float *>malloc(columns * sizeof(float))
     cdef float *shares = <float *>malloc(w * sizeof(float))
-    cdef Py_ssize_t *begin = <Py_ssize_t *>malloc((columns + 1) * sizeof(Py_ssize_t))  # the first place between two
+    cdef Py_ssize_t *begin = <Py_ssize_t *>malloc((columns + 1) * sizeof(Py_ssize_t))  # the first x from column i on
     if mixed == NULL or shares == NULL or begin == NULL:
         free(mixed)
         free(shares)
@@ -218,10 +219,10 @@ def look_up(
     const float[:, :] values, const float[::1] table, const float[::1] rising, float low, float scale,
     float[:, ::1] out, Py_ssize_t top, Py_ssize_t bottom
 ):
-    """Rows top … bottom of out (h, w): what table (n + 1,) says of values, linear in between, constant beyond its ends.
+    """Rows top … bottom of out (h, w): a function of values (h, w), linear between the numbers of its table.
 
-    rising: (n + 1,) how much is between each number of the table and the next. low: the first one's; scale: steps a
-    unit.
+    table: (n + 1,) the function at even steps, constant beyond its ends. rising: (n + 1,) each number's difference to
+    the next. low: the value at the table's first number. scale: steps to a unit.
     """
     cdef Py_ssize_t y, x, i
     cdef float at, most = <float>(table.shape[0] - 1)
@@ -235,9 +236,10 @@ def look_up(
 
 
 def histogram(const float[:, ::1] values, const float[:, ::1] weights, long long[::1] counts):
-    """Add up how many 4096ths of weights (h, w), or of ones where those are empty, values have at each of n steps.
+    """Add to counts (n,) the weights, in 4096ths, of the values in each of n even steps from 0 to 1.
 
-    Values from 0 to 1, what is beyond with the first and the last; weights rounded half up.
+    values: (h, w); those beyond 0 … 1 count with the first and the last step. weights: (h, w), rounded half up, or
+    empty for 1 each.
     """
     cdef Py_ssize_t y, x, i, n = counts.shape[0]
     cdef float steps = <float>n

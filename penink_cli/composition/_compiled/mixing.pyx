@@ -1,5 +1,5 @@
 # cython: boundscheck=False, wraparound=False, cdivision=True
-"""Compiled: how much of the differences of a picture a grey keeps. Only `mixing` imports this module."""
+"""How much of the differences of colours a grey keeps, and the grey of a mix. Only `mixing` imports this module."""
 
 from libc.math cimport fabs
 
@@ -7,9 +7,10 @@ from libc.math cimport fabs
 def kept(
     const double[::1] grey, const int[::1] one, const int[::1] other, const double[::1] wanted, double whole
 ) -> int:
-    """Of all pairs of cells, by their numbers: the lesser of their grey's difference and the one wanted, all summed up.
+    """The sum, over all pairs of cells, of the lesser of their difference in grey and the difference wanted.
 
-    In whole numbers, so many to 1, each rounded down: their sum is the same in any order.
+    grey: (c,). one, other: (p,) numbers of the cells of each pair. wanted: (p,). The sum is of whole numbers, `whole`
+    to 1, each rounded down, so that it is the same in any order.
     """
     cdef Py_ssize_t k
     cdef double difference
@@ -25,7 +26,7 @@ def mix(
     const float[:, :, ::1] colours, float red, float green, float blue, float[:, ::1] out,
     Py_ssize_t top, Py_ssize_t bottom
 ) -> None:
-    """Rows top … bottom of out (h, w): the sums of colours (h, w, 3) by these weights, from 0 to 1."""
+    """Rows top … bottom of out (h, w): colours (h, w, 3) weighed by red, green and blue, clipped to 0 … 1."""
     cdef Py_ssize_t y, x
     cdef float v
     with nogil:

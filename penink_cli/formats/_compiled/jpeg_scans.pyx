@@ -178,7 +178,7 @@ cdef int left_over(Bits* bits) noexcept nogil:
 
 def scan(
     const unsigned char[::1] data, Py_ssize_t start, const uint16_t[:, ::1] lookups, const int[:, ::1] parts,
-    uint64_t[::1] known, int across, int down, int restart, bint progressive, int first, int last, int high,
+    uint64_t[::1] known, units, band,
 ):
     """Read one scan: (WHOLE or what is wrong with it, the place of the marker behind it).
 
@@ -186,18 +186,23 @@ def scan(
     parts: a row a component of the scan: DC table, AC table, blocks across and down in a unit, where its blocks
         begin in `known` and how many a row has there.
     known: of a progressive picture, for each block bits of the coefficients that are not zero.
-    across, down: units of the picture. restart: units between restart markers, 0 for no markers.
-    first, last: the coefficients that a progressive scan brings. high: 0 if it brings them for the first time.
+    units: of the picture across and down, and from one restart marker to the next, 0 for no markers.
+    band: None for a sequential scan; of a progressive one the first and the last coefficient that it brings, and 0 if
+        it brings them for the first time.
     """
     cdef Bits bits
     cdef int result = _WHOLE, run = 0, c, x, y, i, j, number = 0
-    cdef Py_ssize_t unit, units = <Py_ssize_t>across * down
+    cdef int across = units[0], down = units[1], restart = units[2]
+    cdef bint progressive = band is not None
+    cdef int first = band[0] if progressive else 0, last = band[1] if progressive else 63
+    cdef int high = band[2] if progressive else 0
+    cdef Py_ssize_t unit, count = <Py_ssize_t>across * down
     cdef uint64_t* block
     bits.data, bits.at, bits.end = &data[0], start, data.shape[0]
     bits.held = 0
     bits.count = bits.made = 0
     with nogil:
-        for unit in range(units):
+        for unit in range(count):
             if restart and unit and unit % restart == 0:
                 result = left_over(&bits)
                 if result != _WHOLE:

@@ -193,8 +193,8 @@ def _frame(marker: int, content: bytes, found: _File, max_pixels: int) -> None:
     blocks = 0
     for part in found.parts.values():
         part.first = blocks
-        part.stride = _up(width, 8 * most[0]) * part.across
-        blocks += part.stride * _up(height, 8 * most[1]) * part.down
+        part.stride = up(width, 8 * most[0]) * part.across
+        blocks += part.stride * up(height, 8 * most[1]) * part.down
     if marker == 0xC2:
         found.known = np.zeros(blocks, np.uint64)
 
@@ -245,18 +245,18 @@ def _scan(encoded: bytes, at: int, content: bytes, found: _File, verdict: Verdic
     if None in parts or any(t >> 4 > 3 or t & 15 > 3 for t in tables):
         raise ValueError
     most = found.most
-    across, down = _up(found.width, 8 * most[0]), _up(found.height, 8 * most[1])
+    across, down = up(found.width, 8 * most[0]), up(found.height, 8 * most[1])
     rows = np.empty((count, 6), np.int32)
     for i, (part, table) in enumerate(zip(parts, tables, strict=True)):
         assert part is not None
         rows[i] = (table >> 4, 4 + (table & 15), part.across, part.down, part.first, part.stride)
         if count == 1:  # only as many blocks as hold pixels, one a unit
-            across = _up(_up(found.width * part.across, most[0]), 8)
-            down = _up(_up(found.height * part.down, most[1]), 8)
+            across = up(up(found.width * part.across, most[0]), 8)
+            down = up(up(found.height * part.down, most[1]), 8)
             rows[i, 2:4] = 1
     result, at = jpeg_scans.scan(
-        np.frombuffer(encoded, np.uint8), at, found.lookups, rows, found.known, across, down, found.restart,
-        progressive, first, last, high,
+        np.frombuffer(encoded, np.uint8), at, found.lookups, rows, found.known, (across, down, found.restart),
+        (first, last, high) if progressive else None,
     )  # fmt: skip
     cut = at + 1 >= len(encoded)
     if result != jpeg_scans.WHOLE:
@@ -272,7 +272,7 @@ def _scan(encoded: bytes, at: int, content: bytes, found: _File, verdict: Verdic
     return -1 if cut else at
 
 
-def _up(number: int, step: int) -> int:
+def up(number: int, step: int) -> int:
     """How many steps reach the number."""
     return -(-number // step)
 

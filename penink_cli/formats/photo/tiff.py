@@ -251,12 +251,14 @@ def _check_pixels(encoded: bytes, chosen: _Directory, order: str, big: bool, ver
     at, length = (_numbers(encoded, chosen.entries[tag], order, big) for tag in (places, counts))
     there = min(len(at), len(length))
     rows = chosen.one(TILE_HEIGHT if tiled else ROWS) or chosen.height
-    needed = _up(chosen.height, rows) * (_up(chosen.width, chosen.one(TILE_WIDTH) or chosen.width) if tiled else 1)
+    needed = jpeg.up(chosen.height, rows)
+    if tiled:
+        needed *= jpeg.up(chosen.width, chosen.one(TILE_WIDTH) or chosen.width)
     if chosen.one(PLANES) == 2:
         needed *= chosen.one(SAMPLES, 1)
     ends = int((at[:there] + length[:there]).max()) if there else 0
     bits = (chosen.values.get(BITS) or (1,))[0] * chosen.one(SAMPLES, 1)
-    size = _up(chosen.width * bits, 8) * chosen.height if chosen.one(COMPRESSION, 1) == 1 else 0
+    size = jpeg.up(chosen.width * bits, 8) * chosen.height if chosen.one(COMPRESSION, 1) == 1 else 0
     for found, wanted, what in (
         (there, needed, "tiles" if tiled else "strips"),
         (len(encoded), ends, "TIFF bytes"),
@@ -268,11 +270,6 @@ def _check_pixels(encoded: bytes, chosen: _Directory, order: str, big: bool, ver
                 raise error
             verdict.damage(error)
             return
-
-
-def _up(number: int, step: int) -> int:
-    """How many steps reach the number."""
-    return -(-number // step)
 
 
 def _numbers(encoded: bytes, entry: tuple[int, int, bytes], order: str, big: bool) -> np.ndarray:

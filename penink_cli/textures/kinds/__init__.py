@@ -4,10 +4,12 @@ Each has a function `make`, whose keywords are the options that the kind takes, 
 
     angle: of the first layer, degrees, clockwise from the right
     pen: width of the strokes, points
-    spacing: hatching lines of one layer are nowhere closer, points, 0 for no limit; of an engraving, their distance
+    spacing: of hatching, the least distance of the lines of one layer, points, 0 for no limit; of an engraving, the
+        distance of its lines, 0 for the kind's own
     layers: 1 … 4 directions of hatching
-    finest: least width of an engraving's lines, points
-    lines: so many lines of an engraving to the sheet's width, 0 to go by the spacing
-    centre: of rings, parts of the sheet's width and height
-    seed: another hand
+    finest: least width of an engraving's lines, points, 0 for the kind's own
+    lines: how many lines of an engraving cross the sheet's width, 0 for as many as the spacing makes
+    crosses: the tone from which on a second set of an engraving's lines crosses the first, 1 for never
+    centre: of rings, in parts of the sheet's width and height
+    seed: of the hand that places the strokes
 """

@@ -9,17 +9,16 @@ from penink_cli.textures.even import Torus
 from penink_cli.textures.filling import FULL, GAIN_PT, bowed_line, fill, growing
 from penink_cli.textures.normal import normal
 
-#: Lines that a brick is hatched with at the natural size, so many times more where the wall is as much larger, of 256
-#: for which there is room.
+#: Lines that hatch a brick at the natural size; they grow in number with the picture, up to the second figure.
 HATCHED, ROOM = 16, 128
-#: What joints and hatching cover at the natural size.
+#: The part that joints and hatching cover at the natural size.
 COVERED = 0.5
 
 
 def make(*, angle: float = -45.0, pen: float = 0.4, seed: int = 0) -> Texture:
-    """A wall: the joints first, then all bricks hatched, the shaded side first."""
+    """A wall: the joints first, their shaded sides before the lit ones, then all bricks hatched."""
     rng = np.random.default_rng(seed)
-    # no whole number of a printer's dots, in which all joints would lie alike: ink would be off by a twentieth
+    # No multiples of a printer's dots: all joints would lie alike on the dots, and ink would be off by a twentieth.
     course, stretcher = 11.75, 35.75
     rows, columns = 4, 3
     width, height = columns * stretcher, rows * course
@@ -32,7 +31,7 @@ def make(*, angle: float = -45.0, pen: float = 0.4, seed: int = 0) -> Texture:
             x, y = c * stretcher + (stretcher / 2 if r % 2 else 0.0), r * course
             box = np.array([x + gap, y + gap, x + stretcher - gap, y + course - gap]) + normal(rng, 0.25, 4)
             spans.append(box)
-            # the shaded sides, below and at the right, then the lit ones
+            # The shaded sides, below and at the right, come before the lit ones.
             for a, b in (((0, 3), (2, 3)), ((2, 1), (2, 3)), ((0, 1), (2, 1)), ((0, 1), (0, 3))):
                 p, q = box[list(a)], box[list(b)]
                 t = np.array([0.02, 0.34, 0.66, 0.98])[:, None]
@@ -42,14 +41,14 @@ def make(*, angle: float = -45.0, pen: float = 0.4, seed: int = 0) -> Texture:
     sides = [joints[k::4] for k in range(4)]
     strokes = [group[i] for group in sides for i in rng.permutation(len(group))]
     scales = [0.0] * len(strokes)
-    # a line more in every brick, each time half way between two that are there
+    # Each round adds a line to every brick, half way between two that are there: bits reversed are such an order.
     bits = ROOM.bit_length() - 1
     for k in range(ROOM):
         across = (int(f"{k:0{bits}b}"[::-1], 2) + rng.uniform(0.2, 0.8, len(spans))) / ROOM
         for i in rng.permutation(len(spans)):
             left, top, right, bottom = spans[i] + np.array([0.7, rng.uniform(0.3, 1.2), -0.7, -rng.uniform(0.3, 1.2)])
             foot = left - slant + float(across[i]) * (right - left + slant)
-            # slanting, and within the brick
+            # The part of the slanting line that lies within the brick.
             t = np.clip((np.array([left, right]) - foot) / slant, 0.0, 1.0)
             if (t[1] - t[0]) * (bottom - top) < 1.5:
                 continue

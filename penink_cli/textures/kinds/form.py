@@ -1,7 +1,7 @@
-"""Lines along the form, others at a slant over them where it is dark, and black where it is darkest, with white lines.
+"""Lines along the form, others at a slant over them where it is dark, and black where it is darkest.
 
-Lines along the form tell it best while they are alone. Those over them lie neither square to them, which looks woven,
-nor near them, which shimmers.
+Lines along the form show it best while they are alone. The lines over them are turned by TURN: at a right angle both
+look woven, and at a small one they make a moiré.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from dataclasses import replace
 from penink_cli.ground.model import Texture
 from penink_cli.textures.hatching import hatching
 
-ENDS, LAP, TURN = (0.65, 0.92), 0.05, 50.0
+ENDS, LAP, TURN = (0.65, 0.92), 0.05, 50.0  # of the two layers of lines, as `hatching` has them; degrees
 BLACK = 0.92  # the tone above which all is black
 
 

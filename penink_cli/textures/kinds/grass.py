@@ -1,4 +1,4 @@
-"""Blades along the form, from the tip, of which a lawn is drawn where it stands."""
+"""Blades of grass along the form, from the tip."""
 
 from __future__ import annotations
 

@@ -12,7 +12,7 @@ from penink_cli.textures.normal import normal
 
 
 def make(*, angle: float = 0.0, pen: float = 0.4, seed: int = 0) -> Texture:
-    """Blades that grow upwards and bend."""
+    """A tile of blades; angle: degrees by which they lean from upright."""
     size = 96.0
     torus = Torus(size, size, 0.7)
 

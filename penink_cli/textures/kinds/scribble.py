@@ -14,7 +14,7 @@ from penink_cli.textures.normal import normal
 
 
 def make(*, pen: float = 0.4, seed: int = 0) -> Texture:
-    """Loops that a restless pen makes."""
+    """A tile of loops, each a chain of eight cubics."""
     size = 96.0
     torus = Torus(size, size, 0.7)
 

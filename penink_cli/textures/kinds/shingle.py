@@ -9,9 +9,9 @@ from penink_cli.textures.even import Torus
 from penink_cli.textures.filling import FULL, GAIN_PT, bowed_line, fill, growing
 from penink_cli.textures.normal import normal
 
-#: Lines of a shingle's shade at the natural size, and those that there is room for on a larger roof.
+#: Lines of a shingle's shade at the natural size; they grow in number with the picture, up to the second figure.
 SHADED, ROOM = 8, 64
-#: What edges and shade cover at the natural size.
+#: The part that edges and shade cover at the natural size.
 COVERED = 0.45
 
 
@@ -27,7 +27,7 @@ def make(*, angle: float = -45.0, pen: float = 0.4, seed: int = 0) -> Texture:
         for c in range(columns):
             x, y = c * shingle + (shingle / 2 if r % 2 else 0.0), r * course
             places.append((x, y))
-            # half an ellipse of two cubics that hangs down, a little ragged
+            # The lower half of an ellipse, of two cubics, a little ragged.
             across, down = shingle / 2 - 0.6, course * 0.72
             middle, top = x + shingle / 2, y + course * 0.28
             bend = 0.5523
@@ -38,13 +38,13 @@ def make(*, angle: float = -45.0, pen: float = 0.4, seed: int = 0) -> Texture:
             strokes.append(curve)
     strokes = [strokes[i] for i in rng.permutation(len(strokes))]
     scales = [0.0] * len(strokes)
-    bits = ROOM.bit_length() - 1
+    bits = ROOM.bit_length() - 1  # reversed, they put each line half way between two that are there
     for k in range(ROOM):
         parts = (int(f"{k:0{bits}b}"[::-1], 2) + rng.uniform(0.2, 0.8, len(places))) / ROOM
         for i in rng.permutation(len(places)):
             x, y = places[i]
             part = float(parts[i])
-            # longest in the middle, between two shingles of the course above
+            # The shade is longest in the middle, which lies under the gap between two shingles of the course above.
             long = course * (0.15 + 1.6 * part * (1 - part)) * rng.uniform(0.7, 1.0)
             foot = x + 0.8 + part * (shingle - 1.6)
             top = y + course * 0.3

@@ -13,7 +13,7 @@ from penink_cli.textures.filling import FULL, PIXEL_PT, fill, tile
 
 
 def make(*, pen: float = 1.0, seed: int = 0) -> Texture:
-    """Dots."""
+    """A tile of dots; pen: their diameter."""
     size = 72.0
     torus = Torus(size, size, 0.5, grid=0.75)
     rng = np.random.default_rng(seed)
@@ -21,7 +21,7 @@ def make(*, pen: float = 1.0, seed: int = 0) -> Texture:
     def dots(rng: np.random.Generator, n: int) -> Floats:
         return rng.uniform(0, size, (n, 1, 2))
 
-    # the area of a dot as the length of line it stands for
+    # `fill` counts a dot as a line, .8 times as long as it is wide: the width is what it takes for a dot's.
     area = math.pi / 4 * float(disc(np.array(pen), PIXEL_PT)) ** 2
     strokes = fill(torus, dots, area / (pen * 0.8), FULL, 0.0, 60, rng)
     return tile("stipple", strokes, [pen] * len(strokes), size, size, seed, whole=True)
