@@ -12,13 +12,15 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
 from penink_cli.arrangement.gradient import noise_level
 from penink_cli.composition import detail as raising
 from penink_cli.composition import exposure, mixing, recolouring
-from penink_cli.composition.filters import Picture, blurred, by_rows, looked_up, shrunk
+from penink_cli.composition._compiled import tones
+from penink_cli.composition.filters import Picture, blurred, by_pixels, looked_up, shrunk
 from penink_cli.ground.errors import ParameterError
 from penink_cli.ground.model import ColourImage, GreyImage
 
@@ -30,22 +32,16 @@ _WHOLE_FROM = 0.3  # the strength from which on the picture is composed; below, 
 # are found; the least grey from one point to the other.
 _POINTS, _POINTS_BLUR_PT, _LEAST_RANGE = 0.003, 0.35, 0.25
 _EYE_PT, _BROAD_PT, _AROUND_PT = 0.7, 4.0, 9.0  # σ of the two Gaussians between which activity lies, σ of its average
-# The weight of places without activity; the quantile of activity at which it adds 1; the most that it adds.
-_BACKGROUND, _BUSY, _MOST_BUSY = 0.25, 0.8, 1.5
+_BUSY = 0.8  # the quantile of activity that is usual
 _PAGE, _PAGE_PAPER = 0.5, 0.985  # a picture of which more than the first share is lighter than the second is a page
 _INK, _PAPER = 0.05, 0.95  # greys up to the first become solid ink, from the second on bare paper
-# Where a Gaussian of σ _DEEP_PT is darker than _NOT_DEEP, tones go down; where darker than _ALL_DEEP, by _SINK. So all
-# of a dark cloth becomes black, and not parts of it. Places that are lighter than _STAYS themselves stay.
-_DEEP_PT, _SINK, _ALL_DEEP, _NOT_DEEP, _STAYS = 3.0, 0.07, 0.13, 0.21, 0.3
-# A broad tone lighter than _SHINES is a highlight and in no relief; one darker than that by _NEARLY may wholly be.
-_SHINES, _NEARLY = 0.90, 0.15
+# Where a Gaussian of σ _DEEP_PT is dark, tones go down. What is lighter than _STAYS counts in it as no lighter.
+_DEEP_PT, _STAYS = 3.0, 0.3
 # Broad lights from _BLANK_FROM on rise, so that those from _BLANK on are bare paper: skin and skies are not combed with
 # single lines.
 _BLANK_FROM, _BLANK = 0.74, 0.90
 # All lights from _LIGHT_FROM to _BARE rise too, but less steeply: a steeper curve makes haloes.
 _LIGHT_FROM, _BARE = 0.68, 0.92
-# Relief as light as _LIGHTS does not count as lifted by the exposure; relief darker than that by _MIDDLE wholly does.
-_LIGHTS, _MIDDLE = 0.75, 0.2
 _TELLING = 1_500_000  # about as many values are looked at to find the range of a photo
 _NARROW = 0.35  # of the range of grey: a photograph that uses less is reported
 
@@ -184,15 +180,13 @@ def _composed(
         grey = colours
     black, white = points(grey, pt, fade, threads)
     report(f"black point {black:.3f}, white point {white:.3f}")
-    grey = by_rows(
-        lambda grey: np.clip((grey - np.float32(black)) * np.float32(1 / (white - black)), 0, 1), grey, threads=threads
-    )
+    grey = _stretched(grey, black, white, threads)
     noise = noise_level(grey)
     key = exposure.inks(choice.target)
     key *= key
     broad, carved = raising.base(grey, key, pt, threads, colours if colours.ndim == 3 else None)
     del colours
-    detail = grey - broad
+    detail = by_pixels(np.subtract, grey, broad, threads=threads)
     weight = _weight(grey, noise, pt, threads)
     upto = exposure.histogram(broad, weight if fade is None else weight * fade)
     del weight
@@ -200,24 +194,14 @@ def _composed(
     exposed = looked_up(broad, table)
     # A slope belongs to the middle of its step.
     slopes = looked_up(broad, slope, 0.5 / exposure.STEPS, 1 - 0.5 / exposure.STEPS)
-
-    def less_in_lights(carved: Picture, exposed: Picture, broad: Picture) -> Picture:
-        lifted = np.float32(key) * carved * (exposed - broad)
-        return lifted * np.clip((np.float32(_LIGHTS) - broad) * np.float32(1 / _MIDDLE), 0, 1)
-
-    def without_shine(carved: Picture, broad: Picture) -> Picture:
-        return carved * np.clip((np.float32(_SHINES) - broad) * np.float32(1 / _NEARLY), 0, 1)
-
-    lifted = by_rows(less_in_lights, carved, exposed, broad, threads=threads)
-    carved = by_rows(without_shine, carved, broad, threads=threads)
+    lifted = by_pixels(partial(tones.lifted_by, key=key), carved, exposed, broad, threads=threads)
+    carved = by_pixels(tones.without_shine, carved, broad, threads=threads)
     del broad
     exposed = _blank(exposed, carved, _BLANK_FROM, _BLANK, _PAPER, threads=threads)
     carved *= np.float32(min(key, 1.0))
     result = raising.raised(detail, exposed, slopes, lifted, carved, choice.detail, noise, pt, threads)
     del detail, exposed, slopes, lifted
-    result = by_rows(
-        lambda grey: np.clip((grey - np.float32(_INK)) * np.float32(1 / (_PAPER - _INK)), 0, 1), result, threads=threads
-    )
+    result = _stretched(result, _INK, _PAPER, threads)
     result = _blank(_sunk(result, pt, threads), carved, _LIGHT_FROM, _BARE, threads=threads)
     paper = int((grey > _PAGE_PAPER).sum()) / grey.size
     if paper > _PAGE:
@@ -226,27 +210,21 @@ def _composed(
     return result
 
 
+def _stretched(grey: Picture, black: float, white: float, threads: int) -> Picture:
+    """Grey (h, w) with these two as 0 and 1."""
+    return by_pixels(partial(tones.stretched, low=black, by=1 / (white - black)), grey, threads=threads)
+
+
 def _sunk(grey: Picture, pt: float, threads: int) -> Picture:
     """Grey (h, w) with its deep shades darkened to black; lighter places within them stay."""
-
-    def sunk(grey: Picture, around: Picture) -> Picture:
-        deep = np.clip((np.float32(_NOT_DEEP) - around) * np.float32(1 / (_NOT_DEEP - _ALL_DEEP)), 0, 1)
-        deep *= np.clip((np.float32(_STAYS) - grey) * np.float32(1 / _STAYS), 0, 1) * np.float32(2)
-        return np.maximum(grey - np.float32(_SINK) * np.minimum(deep, 1), 0)
-
     around = blurred(np.minimum(grey, np.float32(_STAYS)), _DEEP_PT * pt, threads)
-    return by_rows(sunk, grey, around, threads=threads)
+    return by_pixels(tones.sunk, grey, around, threads=threads)
 
 
 def _blank(grey: Picture, carved: Picture, light: float, bare: float, paper: float = 1.0, threads: int = 1) -> Picture:
     """Grey (h, w) with lights raised: `light` stays, `bare` becomes `paper`, linear in between; less so in relief."""
-    more = np.float32((paper - light) / (bare - light) - 1)
-
-    def blank(grey: Picture, carved: Picture) -> Picture:
-        over = np.maximum(grey - np.float32(light), 0)
-        return grey + np.minimum(more * over, np.maximum(np.float32(paper) - grey, 0)) * (1 - carved)
-
-    return by_rows(blank, grey, carved, threads=threads)
+    more = (paper - light) / (bare - light) - 1
+    return by_pixels(partial(tones.blanked, light=light, more=more, paper=paper), grey, carved, threads=threads)
 
 
 def points(grey: Picture, pt: float, fade: Picture | None, threads: int) -> tuple[float, float]:
@@ -273,20 +251,11 @@ def narrow_range(photo: GreyImage | ColourImage) -> float | None:
 
 def _weight(grey: Picture, noise: float, pt: float, threads: int) -> Picture:
     """How much each place (h, w) counts for the exposure: a busy subject more than an empty background."""
-
-    def stirred(fine: Picture, broad: Picture) -> Picture:
-        band = fine - broad
-        return np.maximum(0, band * band - np.float32(0.3 * noise * noise))
-
     fine, broad = (blurred(grey, sigma * pt, threads) for sigma in (_EYE_PT, _BROAD_PT))
-    busy = by_rows(stirred, fine, broad, threads=threads)
-    around = blurred(busy, _AROUND_PT * pt, threads)
-    activity = by_rows(lambda busy: np.sqrt(np.maximum(busy, 0)), around, threads=threads)
+    busy = by_pixels(partial(tones.stirred, noise=0.3 * noise * noise), fine, broad, threads=threads)
+    activity = by_pixels(tones.rooted, blurred(busy, _AROUND_PT * pt, threads), threads=threads)
     usual = max(0.01, exposure.quantile(exposure.histogram(activity, None, 4096), _BUSY))
-    return by_rows(
-        lambda activity: np.float32(_BACKGROUND) + np.minimum(np.float32(_MOST_BUSY), activity * np.float32(1 / usual)),
-        activity, threads=threads,
-    )  # fmt: skip
+    return by_pixels(partial(tones.weighed, by=1 / usual), activity, threads=threads)
 
 
 def _scaled(values: np.ndarray, maxval: int, width: int, height: int, threads: int) -> Picture:

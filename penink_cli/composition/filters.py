@@ -114,6 +114,21 @@ def by_rows(work: Callable[..., Picture], *pictures: npt.NDArray[Any], threads: 
     return out
 
 
+def by_pixels(work: Callable[..., object], *pictures: Picture, threads: int = 1) -> Picture:
+    """What `work`, a kernel of `tones` or an operation of numpy, makes of pictures (h, w) pixel by pixel.
+
+    It is called with some rows of each, and those of the result, which it fills.
+    """
+    rows, columns = pictures[0].shape
+    out = np.empty((rows, columns), np.float32)
+
+    def band(top: int, bottom: int) -> None:
+        work(*(picture[top:bottom] for picture in pictures), out[top:bottom])
+
+    threading.share(threading.ranges(band, rows, max(1, _NEAR // columns)), threads)
+    return out
+
+
 def _each(rows: int, work: Callable[[int, int], object], threads: int) -> None:
     """Do the work, which takes the first row and one past the last, for all rows."""
     threading.share(threading.ranges(work, rows, _BAND), threads)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from functools import partial
 
 import numpy as np
 import pytest
@@ -11,10 +12,12 @@ import skimage.data
 from scipy.ndimage import gaussian_filter
 
 from penink_cli.composition import exposure, filters, mixing, recolouring
+from penink_cli.composition._compiled import tones
 from penink_cli.composition.compose import Choice, compose, compose_colours, narrow_range, working_size
 from penink_cli.formats import pgm, photo
 from penink_cli.ground.errors import ParameterError
 from penink_cli.ground.model import ColourImage, GreyImage
+from tests.oracles import tones as oracle
 
 RNG = np.random.default_rng(5)
 
@@ -211,8 +214,32 @@ def test_blur_is_gaussian(sigma):
     assert np.abs(filters.blurred(values, sigma) - expected).max() < 0.08 * values.std() + 1e-6
 
 
+PIXELS = {  # what composing does to each pixel: of how many pictures, and with which numbers
+    "stretched": (1, {"low": 0.13, "by": 1.7}), "based": (3, {}), "stirred": (2, {"noise": 0.02}), "rooted": (1, {}),
+    "weighed": (1, {"by": 2.3}), "lifted_by": (3, {"key": 0.9}), "without_shine": (2, {}),
+    "blanked": (2, {"light": 0.68, "more": 0.4, "paper": 0.95}), "sunk": (2, {}), "less_light": (3, {}),
+    "gained": (6, {"gain": 1.8}), "guarded": (2, {"level": 0.1, "twice": 0.2}), "drawn": (3, {}), "with_room": (3, {}),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", PIXELS)
+def test_kernels_do_to_pixels_what_numpy_does_one_operation_after_the_other(name):
+    count, numbers = PIXELS[name]
+    rng = np.random.default_rng(7)
+    pictures = [(rng.random((40, 53)) * 1.3 - 0.2).astype(np.float32) for _ in range(count)]
+    pictures[-1][::2] *= np.float32(0.05)  # where the curves bend
+    expected = getattr(oracle, name)(*pictures, **numbers)
+    work = partial(getattr(tones, name), **numbers)
+    try:
+        for width in (16, 32):
+            tones.take_lanes(width)
+            assert (filters.by_pixels(work, *pictures, threads=2) == expected).all()
+    finally:
+        tones.take_lanes(32)
+
+
 @pytest.mark.parametrize("depth", [np.uint8, np.uint16, np.float32])
-@pytest.mark.parametrize("channels", [1, 3])
+@pytest.mark.parametrize("channels", [1, 2, 3, 4])
 def test_vectors_of_any_width_filter_and_shrink_the_same(depth, channels):
     """Sums of one place's parts in their order, told in a plain loop; and of whole numbers as if they were divided."""
     rng = np.random.default_rng(4)

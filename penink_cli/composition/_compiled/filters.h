@@ -11,6 +11,7 @@
 #define bytes_summed MAKE(bytes_summed)
 #define bytes_divided MAKE(bytes_divided)
 #define shorts_divided MAKE(shorts_divided)
+#define gathered MAKE(gathered)
 #define shorts_summed MAKE(shorts_summed)
 #define floats_summed MAKE(floats_summed)
 

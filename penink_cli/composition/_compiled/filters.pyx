@@ -24,6 +24,10 @@ cdef extern from "filters.h" nogil:
     void floats_summed(
         const float** row, float* part, Py_ssize_t n, float whole, float* out, Py_ssize_t width
     )
+    void gathered(
+        float* row, float* part, Py_ssize_t* begin, Py_ssize_t* column, float area, float* out, Py_ssize_t w,
+        Py_ssize_t channels
+    )
     int best_lanes()
     int lanes
 
@@ -56,9 +60,9 @@ def shrink(
     """
     cdef Py_ssize_t rows = values.shape[0], columns = values.shape[1], channels = values.shape[2]
     cdef Py_ssize_t h = out.shape[0], w = out.shape[1], long_row = columns * channels
-    cdef Py_ssize_t y, x, r, c, k, n, q, first, last
+    cdef Py_ssize_t y, x, r, k, n, q, first, last
     cdef double down = <double>rows / h, across = <double>columns / w, low, high
-    cdef float part, total, area = <float>(scale / (down * across))
+    cdef float part, area = <float>(scale / (down * across))
     cdef Py_ssize_t most = <Py_ssize_t>down + 2  # rows that a pixel covers
     cdef float *sums = <float *>malloc((long_row + most) * sizeof(float))
     cdef float *row_parts = sums + long_row
@@ -106,14 +110,7 @@ def shrink(
                     shorts_divided(covered, row_parts, n, whole, sums, long_row)
             else:
                 floats_summed(covered, row_parts, n, whole, sums, long_row)
-            for x in range(w):
-                for c in range(channels):
-                    total = 0
-                    k = column[x] * channels + c
-                    for q in range(begin[x], begin[x + 1]):
-                        total += parts[q] * sums[k]
-                        k += channels
-                    out[y, x, c] = total * area
+            gathered(sums, parts, begin, column, area, &out[y, 0, 0], w, channels)
     free(sums)
     free(covered)
     free(begin)
