@@ -71,6 +71,21 @@ def test_a_corner_s_short_edge_has_the_step_of_the_long_ones():
     assert np.allclose(found, 0.6, atol=0.03)
 
 
+@pytest.mark.parametrize("at", np.linspace(45.5, 50.5, 11))
+def test_where_what_lies_behind_a_line_ends_its_step_is_that_of_one_of_both(at):
+    """No edge parts the two things behind it."""
+    photo = painted(lambda x, y: (y < 24) & (x < at), 0.2, 0.5, 96)
+    photo += painted(lambda x, y: (y < 24) & (x > at), 0, 0.6, 96) + painted(lambda x, y: y > 60, 0, 0.4, 96)
+    along = np.arange(3, 94, 6.0)
+    places = [(x, y) for y in (24, 60) for x in along]
+    n = len(along)
+    found = strengths(photo, listed(places, [[i, i + 1] for i in range(2 * n - 1) if i != n - 1], 96), 0.6)
+    middles = (along[1:] + along[:-1]) / 2
+    clear = np.abs(middles - at) > 0.4
+    assert np.allclose(found[: n - 1][clear], np.where(middles < at, 0.3, 0.6)[clear], atol=0.02)
+    assert np.allclose(found[n - 1 :], 0.4, atol=0.02)
+
+
 def test_noise_is_averaged_out_along_a_line_and_a_step_that_changes_is_not():
     noise = np.random.default_rng(1).normal(0, 6 / 255, (48, 400))
     y, x = np.mgrid[:48, :400] + 0.5

@@ -36,6 +36,7 @@ cdef struct Side:
 cdef struct Step:
     double grey  # of the side to the left of the edge less that to its right
     double variance  # where a pixel's is 1; below 0 where one side has no pixel
+    double mixed  # the part of it that was reckoned out
 
 
 cdef class Photo:
@@ -293,21 +294,22 @@ cdef class Photo:
         cdef Side left, right
         cdef Step step
         self.look(edge, t, reach, &here)
-        step.grey, step.variance = 0, -1
+        step.grey, step.variance, step.mixed = 0, -1, 0
         if self.side(&here, -dy, dx, &left) and self.side(&here, dy, -dx, &right):
             pure = max(_LEAST_LEFT, 1.0 - left.mixed - right.mixed)
             step.grey = (right.value - left.value) / pure
             step.variance = (left.variance + right.variance) / (pure * pure)
+            step.mixed = (left.mixed + right.mixed) / pure
         return step
 
     def measure(
         self, int[::1] edge, double[::1] t, double reach, Py_ssize_t first, Py_ssize_t last, double[:, ::1] out
     ) -> None:
-        """Fill rows first … last − 1 of out (n, 2): the step at the part t (n,) of edge (n,), and its variance.
+        """Fill rows first … last − 1 of out (n, 3): the step at part t (n,) of edge (n,), its variance and mixture.
 
         The step is signed: what is to the left of the edge less what is to its right. The variance is that where a
-        pixel's is 1, below 0 where one side has no pixel. reach: how far from the station pixels may be, at most
-        MAX_REACH.
+        pixel's is 1, below 0 where one side has no pixel. The mixture is the part of the step that was reckoned out of
+        pixels near edges. reach: how far from the station pixels may be, at most MAX_REACH.
         """
         cdef Py_ssize_t k
         cdef Step step
@@ -316,3 +318,4 @@ cdef class Photo:
                 step = self.step(edge[k], t[k], reach)
                 out[k, 0] = step.grey
                 out[k, 1] = step.variance
+                out[k, 2] = step.mixed
