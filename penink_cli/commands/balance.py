@@ -18,13 +18,13 @@ from penink_cli.options.sheet import check_area
 if TYPE_CHECKING:
     from penink_cli.ground.model import Floats, Strokes
 
-#: How far two sheets' sides may differ, points: hatching's has whole pixels of a grey, that of lines the photo's.
+#: By how much two sheets' sides may differ, points: hatching has the shape of a grey, lines have that of the photo.
 SAME_PT = 0.5
 
 
 @click.command()
 @files_argument
-@click.option("--plate", type=click.IntRange(1), metavar="N", help="Write that one of the files, from 1.")
+@click.option("--plate", type=click.IntRange(1), metavar="N", help="Write the plate of the N-th FILE alone.")
 @plates_option
 @click.option(
     "--tone",
@@ -32,28 +32,31 @@ SAME_PT = 0.5
     type=click.Path(allow_dash=True),
     multiple=True,
     metavar="FILE",
-    help="The plate that a file's strokes were made of, by separate; once for each file, in their order.",
+    help="The plate, made by separate, that a FILE's strokes were blasted from; once for each FILE, in their order.",
 )
 @click.option(
     "--correct",
     is_flag=True,
-    help="Write instead the tone that the plate is to be blasted anew with: all of them then make up for what is off.",
+    help="Write no strokes but the tone that a plate is to be blasted from anew: blasted so, plates make up for what "
+    "is wrong.",
 )
-@click.option("--gamma", type=Finite(0.05, 20), default=1.0, metavar="G", help="That blast was told of the plates.")
+@click.option(
+    "--gamma", type=Finite(0.05, 20), default=1.0, metavar="G", help="The --gamma that the plates were blasted with."
+)
 @click.option(
     "--ink",
     "ink_files",
     type=click.Path(allow_dash=True),
     multiple=True,
     metavar="FILE",
-    help="Strokes of the last file's ink that are on the paper too, such as outlines, and stay as they are.",
+    help="Strokes of the last FILE's ink that are on the paper too, such as outlines: counted, not changed.",
 )
 @click.option(
     "--lines",
     "lines_file",
     type=click.Path(allow_dash=True),
     metavar="FILE",
-    help="Telling lines, as blast was told of them: nothing makes up for the light ones, which are left out.",
+    help="The --lines that the plates were blasted with: nothing makes up for light ones, which are to stay white.",
 )
 @threads_option
 @output_options
@@ -73,9 +76,10 @@ def balance(
 ) -> None:
     """Press the strokes of plates so that together they print the right colours.
 
-    FILEs are the strokes of the plates, each with its --color, drawn for themselves; what each is wrong by, and what
-    they do to one another, is set right in all by widths that change by some percent. With --correct the plates' tones
-    are changed instead, to be drawn anew, as must be where one pen draws all. All are written, or, with --plate, one.
+    FILEs are the strokes of the plates, each blasted by itself with its --color. Each is a little wrong, and together
+    they change one another's colours; widths that change by some percent set that right. With --correct the tones of
+    the plates are changed instead, to be blasted anew, which serves where one pen draws all. --plates writes all
+    plates, --plate one.
 
     \b
     penink balance --plates 'pressed-{}.jsonl' --tone blue.pgm --tone red.pgm blue.jsonl red.jsonl

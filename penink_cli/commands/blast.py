@@ -42,7 +42,7 @@ if TYPE_CHECKING:
 
 @click.command()
 @texture_option
-@edges_option(required=False)
+@edges_option(required=False, says="Strokes end at them.")
 @click.option("--width", type=LENGTH, help="Width of the picture on paper: 4in, 100mm, 288 (points).")
 @click.option("--dpi", type=POSITIVE, metavar="N", help="Size on paper by the samples per inch, instead of --width.")
 @click.option("--pen", type=LENGTH, help="Draw all strokes with one pen of this width.  [default: the texture's]")
@@ -51,17 +51,21 @@ if TYPE_CHECKING:
     type=Finite(0.1, 1),
     default=1.0,
     metavar="F",
-    help="Draw with this part of the pens, lines so much closer.",
+    help="Draw with pens F times as wide, and with lines as much closer.  [default: 1]",
 )
-@click.option("--natural", type=LENGTH, help="Width at which a texture that grows has its size.  [default: it says]")
-@click.option("--gamma", type=Finite(0.05, 20), default=1.0, metavar="G", help="Tone curve: grey is raised to it.")
+@click.option(
+    "--natural",
+    type=LENGTH,
+    help="Width of the picture in which a texture that grows has its own size.  [default: as the texture says]",
+)
+@click.option("--gamma", type=Finite(0.05, 20), default=1.0, metavar="G", help="Tone curve: grey to the power of G.")
 @click.option(
     "--seed",
     type=click.IntRange(0, 2**63 - 1),
     default=0,
     show_default=True,
     metavar="N",
-    help="A hand. The threshold rule knows but one.",
+    help="Each number is another hand; the rule threshold has only one.",
 )
 @printer_option()
 @click.option(
@@ -76,14 +80,15 @@ if TYPE_CHECKING:
     type=Finite(0, 2),
     default=0.0,
     metavar="S",
-    help="Strokes of hatching swell where the picture is darker than around; 1 by as much as it is.  [default: 0]",
+    help="Strokes of hatching swell where the picture is darker than around: S times as much as it is darker.  "
+    "[default: 0]",
 )
 @click.option(
     "--tone-of",
     "true_file",
     type=click.Path(allow_dash=True),
     metavar="FILE",
-    help="The PGM whose tone the drawing is to have, where the image to be drawn is a sharper one made of it.",
+    help="A PGM: the drawing gets its tone, where FILE is a sharper image made of it.",
 )
 @click.option(
     "--directions",
@@ -105,23 +110,24 @@ if TYPE_CHECKING:
     type=click.Path(allow_dash=True),
     multiple=True,
     metavar="FILE",
-    help="Strokes that are on the paper already, such as outlines: counted, not written. May be repeated.",
+    help="Strokes that are on the paper already, such as outlines: counted, not written; may be repeated.",
 )
 @click.option(
     "--turn",
     type=Finite(-360, 360),
     default=0.0,
     metavar="DEGREES",
-    help="Turn the hatching clockwise, from a field of directions too: that of several inks is to cross.",
+    help="Turn the hatching clockwise, also from a field of directions, so that hatching of several inks crosses.",
 )
 @click.option(
     "--solid",
     type=Finite(0.5, 1),
     metavar="TONE",
-    help="Fill what is at least so dark, where the texture reaches black: .985 for a plate.  [default: .93 or .97]",
+    help="If the texture reaches black, fill what is as dark as TONE or darker: .985 for a plate.  "
+    "[default: .93 or .97]",
 )
-@click.option("--color", "--colour", "colour", type=COLOUR, metavar="COLOUR", help="The ink, as the result is to say.")
-@click.option("--layer", "layer_name", type=TEXT, metavar="NAME", help="The layer's name, as the result is to say.")
+@click.option("--color", "--colour", "colour", type=COLOUR, metavar="COLOUR", help="Colour of the ink, for the result.")
+@click.option("--layer", "layer_name", type=TEXT, metavar="NAME", help="Name of the layer, for the result.")
 @threads_option
 @verbose_option
 @filter_options
@@ -156,8 +162,8 @@ def blast(
 ) -> None:
     """Turn grey into pen strokes of the same tone.
 
-    The strokes' width and density do not depend on the size: a picture blasted for any size has the same
-    tone and as many strokes to the inch. With the edges of the image strokes end at them.
+    The width and the density of strokes do not depend on the size: blasted for any size, a picture has the same tone
+    and as many strokes to the inch. Given the edges of the image, strokes end at them.
 
     \b
     penink blast --texture crosshatch --width 4in photo.pgm | penink to-ps -o photo.ps
@@ -223,7 +229,10 @@ def blast(
 
 
 def warnings(tone: Floats, texture: Texture, pen: float | None, device_dpi: float | None) -> list[str]:
-    """What will keep the picture from having its tone, a line each."""
+    """What will keep the picture from having its tone, a line each.
+
+    tone: (h, w), 0 … 1. pen: width of the one pen, points, None for the texture's.
+    """
     from penink_cli.blasting.blast import too_dark
     from penink_cli.blasting.reach import reachable
 

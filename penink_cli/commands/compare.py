@@ -13,7 +13,7 @@ from penink_cli.options.inputs import only_one_standard_input
 from penink_cli.options.layers import as_printed, gain_option
 from penink_cli.options.photographs import photo_options, read_image_or_strokes
 
-PLACE_PT, PLACE_PX = 0.1, 1
+PLACE_PT, PLACE_PX = 0.1, 1  # the default of --place, of strokes and of pictures
 
 
 @click.command()
@@ -25,13 +25,13 @@ PLACE_PT, PLACE_PX = 0.1, 1
     default=1.0,
     show_default=True,
     metavar="PERCENT",
-    help="Tone may differ by that much anywhere, as the eye sees it; of pictures, a pixel's grey.",
+    help="The most that tone, as the eye sees it, may differ anywhere; of pictures, the grey of a pixel.",
 )
 @click.option(
     "--place",
     type=Finite(least=0, most=100),
     metavar="N",
-    help="How far lines may have moved, points; of pictures, whole pixels.  [default: 0.1, of pictures 1]",
+    help="The most that lines may have moved, points; of pictures, whole pixels.  [default: 0.1, of pictures 1]",
 )
 @gain_option
 @photo_options
@@ -50,8 +50,8 @@ def compare(
 ) -> None:
     """Say whether two drawings or pictures are the same, to a tolerance.
 
-    Two strokes files, or two pictures (PGM, PNG …) of one size: the same in tone, and in place. Exit status 0 where
-    they are, 1 with a line where they are not; the figures go to standard output.
+    FILEs are two strokes files, or two pictures (PGM, PNG …) of one size. They are compared in tone and in place. The
+    figures go to standard output; the exit status is 0 where they are the same, and 1, with a line, where they differ.
 
     \b
     penink compare photo.strokes.jsonl hatching.strokes.jsonl

@@ -21,8 +21,8 @@ def completion(shell: str, output: str | None, **_: Any) -> None:
     penink completion zsh > ~/.zfunc/_penink
     penink completion fish > ~/.config/fish/completions/penink.fish
 
-    Subcommands, options and the values of many are completed. For zsh the folder must be in fpath
-    before compinit is called. A package that is installed for all users brings these files along.
+    The shell then completes subcommands, options and the values of many options. For zsh the folder must be in fpath
+    before compinit is called. A package for all users brings these files along.
     """
     from penink_cli.manual import completion_script
 

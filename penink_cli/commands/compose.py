@@ -39,9 +39,15 @@ from penink_cli.options.sheet import check_sheet
     default=288.0,
     show_default=True,
     metavar="N",
-    help="Make a large photo smaller, to that many pixels an inch of the drawing, which shows no more.",
+    help="Make a larger photo smaller, to N pixels an inch of the drawing, which shows no more.",
 )
-@click.option("--maxval", type=click.IntRange(1, 65535), default=255, metavar="N", help="65535 for 16 bits.")
+@click.option(
+    "--maxval",
+    type=click.IntRange(1, 65535),
+    default=255,
+    metavar="N",
+    help="White of the result; 65535 for 16 bits.  [default: 255]",
+)
 @threads_option
 @verbose_option
 @filter_options
@@ -66,10 +72,11 @@ def compose(
 ) -> None:
     """Make the grey that a drawing is to have, from a photo.
 
-    A photo's tones drawn as they are make a dark grey drawing. Here colours are mixed so that they differ, tones
-    are moved towards an illustrator's, who spends paper and black, and detail is raised until a pen can show it.
+    A photo's tones drawn as they are make a dark grey drawing. So colours are mixed to a grey in which they differ,
+    tones are moved towards those of an illustrator, who spends paper and black, and detail is raised until a pen can
+    show it.
 
-    With --color they are colours, for plates of several inks.
+    With --color the result is a PPM, the photo's colours as light as that grey, for plates of several inks.
 
     \b
     penink compose --width 6in photo.jpg -o g.pgm

@@ -25,7 +25,7 @@ from penink_cli.options.photographs import photo_options, read_colours
 @click.option(
     "--angle",
     type=Finite(-360, 360),
-    help="Of strokes where the photo says nothing, degrees from x towards y.  [default: -45]",
+    help="The direction where the photo shows none, degrees clockwise from the right.  [default: -45]",
 )
 @click.option(
     "--follow", type=Finite(0, 1), help="0: the angle everywhere … 1: the form wherever it leads.  [default: 0.5]"
@@ -34,15 +34,15 @@ from penink_cli.options.photographs import photo_options, read_colours
 @click.option(
     "--noise",
     type=Finite(0, 1),
-    help="A change of grey a pixel that is hardly more than grain; more makes flat places calmer.  [default: 0.006]",
+    help="Change of grey from pixel to pixel that is hardly more than grain: more calms flat places.  [default: 0.006]",
 )
-@click.option("--size", type=click.IntRange(1, 1024), help="Samples along the longer side.  [default: 96]")
+@click.option("--size", type=click.IntRange(1, 1024), help="Samples of the field along its longer side.  [default: 96]")
 @click.option(
     "--strokes",
     "strokes_file",
     type=click.Path(allow_dash=True),
     metavar="FILE",
-    help="Your own strokes over the photo, a strokes file or SVG: the field runs along them.",
+    help="Your own strokes over the photo, a strokes file or SVG: the field follows them.",
 )
 @click.option(
     "--lines",
@@ -63,8 +63,8 @@ def detect_directions(
 ) -> None:
     """Find the directions that strokes follow in a photograph.
 
-    The result is a field of angles, three PGM images in one stream, for drawings of any size. Colours count: give the
-    photo itself and not its grey.
+    The result is a field of angles, three PGM images in one stream, for drawings of any size. Colours tell of the form
+    too: give the photo itself and not its grey.
 
     \b
     penink detect-directions -e photo.edges.json photo.png -o photo.directions.pgm

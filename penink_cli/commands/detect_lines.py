@@ -35,20 +35,21 @@ if TYPE_CHECKING:
     "--density",
     type=POSITIVE,
     metavar="D",
-    help="Of what --seen-at has room for: points of line in a square point, as `penink lines` has it.  [default: 0.13]",
+    help="With --seen-at: points of line in a square point that there is room for, as of `penink lines`.  "
+    "[default: 0.13]",
 )
 @click.option(
     "--per-inch2",
     type=POSITIVE,
     metavar="L",
-    help="Of what --seen-at has room for: inches of line in a square inch.  [default: 6]",
+    help="With --seen-at: inches of line in a square inch that there is room for, as of `penink lines`.  [default: 6]",
 )
 @click.option(
     "--directions",
     "directions_file",
     type=click.Path(allow_dash=True),
     metavar="FILE",
-    help="The direction field: faint lines across it are left away.  [default: by the photo]",
+    help="The direction field: faint lines across it are left out.  [default: by the photo]",
 )
 @threads_option
 @verbose_option
@@ -68,8 +69,8 @@ def detect_lines(
 ) -> None:
     """Find the telling lines of a photograph.
 
-    What a pen would draw of it besides its tone: contours, folds, whiskers, pupils; and light lines on dark ground. The
-    result is a list in pixels of the photo, each line with a rank: it serves every size on paper.
+    These are what a pen would draw of it besides its tone: contours, folds, whiskers, pupils, and light lines on dark
+    ground. The result is a list in pixels of the photo, each line with a rank, that serves every size on paper.
 
     \b
     penink detect-lines photo.png -o photo.lines.json
@@ -78,6 +79,8 @@ def detect_lines(
     from penink_cli.formats import lines
     from penink_cli.lines import detection
 
+    if seen_at is None and (density is not None or per_inch2 is not None):
+        raise click.UsageError(f"--{'density' if density is not None else 'per-inch2'} goes with --seen-at")
     only_one_standard_input(file, directions_file)
     photo = read_photo(file, max_pixels)
     rows, columns = photo.values.shape

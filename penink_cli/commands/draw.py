@@ -6,7 +6,6 @@ import os
 from typing import Any
 
 import click
-from click.core import ParameterSource
 
 from penink_cli.chain.drawing import draw_one
 from penink_cli.chain.filters import bench
@@ -16,7 +15,15 @@ from penink_cli.chain.many import draw_all, output_names
 from penink_cli.chain.request import Request, checked_style, page_words, pen_of_all
 from penink_cli.ground import streams
 from penink_cli.ground.errors import in_quotes
-from penink_cli.options.common import LENGTH, DeviceDpi, Finite, output_options, threads_option, verbose_option
+from penink_cli.options.common import (
+    LENGTH,
+    DeviceDpi,
+    Finite,
+    is_given,
+    output_options,
+    threads_option,
+    verbose_option,
+)
 from penink_cli.options.composition import composition_options
 from penink_cli.options.inks import Inks, inks_option
 from penink_cli.options.inputs import only_one_standard_input
@@ -27,7 +34,7 @@ from penink_cli.options.textures import TEXTURE
 from penink_cli.outputs.registry import STROKES, endings, on_screen
 
 STYLE_NAME = "house"
-PLATES_TEXTURE = "crosshatch"  # true up to the darkest tones, which inks over one another need
+PLATES_TEXTURE = "crosshatch"  # its tone is true up to the darkest, which inks over one another need
 
 
 @click.command()
@@ -140,7 +147,7 @@ def draw(
     penink draw photo.jpg --directions strokes.svg --watch -o photo.html
     """
     context = click.get_current_context()
-    given = {name: value for name, value in context.params.items() if _is_given(context, name)}
+    given = {name: value for name, value in context.params.items() if is_given(name)}
     ending = _ending(output, out_dir, wanted, watching)
     if "max_bytes" in given and ending != ARCHIVE:
         raise click.UsageError(f"--max-bytes is of no use for {ending}")
@@ -197,7 +204,7 @@ def _draw_again(request: Request, file: str | None, output: str | None, read: li
 
 
 def _ending(output: str | None, out_dir: str | None, wanted: str | None, watching: bool) -> str:
-    """The ending of what is to be written."""
+    """The ending of what is to be written. Raises UsageError where -o, --out-dir, --as and --watch do not agree."""
     own = os.path.splitext(output or "-")[1].lower()  # a FIFO or device has none
     if own and own not in endings():
         raise click.UsageError(f"-o {in_quotes(output or '')}: known endings are {', '.join(endings())}")
@@ -208,7 +215,3 @@ def _ending(output: str | None, out_dir: str | None, wanted: str | None, watchin
     if own and wanted is not None and own != f".{wanted}":
         raise click.UsageError(f"--as {wanted} and -o {in_quotes(output or '')} differ")
     return own or f".{wanted or 'ps'}"
-
-
-def _is_given(context: click.Context, name: str) -> bool:
-    return context.get_parameter_source(name) is not ParameterSource.DEFAULT

@@ -17,7 +17,7 @@ MOST = 2**31 - 1  # pixels along a side of the output
 @click.command(name="enlarge")
 @filter_options
 @edges_option(required=False)
-@click.option("--scale", type=POSITIVE, metavar="S", help="Output pixels a sample, along each axis; any real number.")
+@click.option("--scale", type=POSITIVE, metavar="S", help="Output pixels to a sample, along each axis; any number.")
 @click.option("--size", type=SIZE, help="The size of the output; the two axes may scale differently.")
 @click.option(
     "--radius",
@@ -25,7 +25,7 @@ MOST = 2**31 - 1  # pixels along a side of the output
     default=1.0,
     show_default=True,
     metavar="R",
-    help="The detour around an edge, in samples, beyond which a sample has no effect.",
+    help="How long, in sample spacings, the detour around an edge may be for a sample to have an effect.",
 )
 @click.option(
     "--kernel",
@@ -35,7 +35,7 @@ MOST = 2**31 - 1  # pixels along a side of the output
     help="cubic passes through the samples; bspline never overshoots, and blurs.",
 )
 @click.option("--soften", is_flag=True, help="Reconstruct half the size, and double that with a slight blur at edges.")
-@click.option("--window", type=WINDOW, help="Only those pixels of the output.")
+@click.option("--window", type=WINDOW, help="Only these pixels of the output.")
 @click.option("--maxval", type=click.IntRange(1, 65535), metavar="N", help="White of the output.  [default: as read]")
 @threads_option
 def enlarge(

@@ -30,7 +30,7 @@ from penink_cli.options.inputs import read_lines
     default=6.0,
     show_default=True,
     metavar="L",
-    help="Inches of line that a square inch has room for, on the mean of the picture.",
+    help="Inches of line in a square inch, on average over the picture, that there is room for.",
 )
 @click.option("--min-rank", type=Finite(least=0), metavar="R", help="Least rank of a line.  [default: by the size]")
 @click.option(
@@ -61,8 +61,8 @@ def lines(
 ) -> None:
     """Turn telling lines into pen strokes for one size on paper.
 
-    The most telling first, as long as there is room around each: a stamp gets few, a poster many. Strokes swell
-    with the line and taper; --ruled and --loose draw them as an architect does, and as in a sketch.
+    The most telling lines come first, as long as there is room around each: a stamp gets few, a poster many. Strokes
+    swell with the line and taper. With --ruled they are drawn as an architect draws, with --loose as in a sketch.
     Light lines are not drawn: `blast --lines` leaves them out of the hatching.
 
     \b
@@ -77,7 +77,7 @@ def lines(
     from penink_cli.options.sheet import check_sheet
 
     found = read_lines(file or "-")
-    assert found is not None  # which it is only where no file is named
+    assert found is not None
     height = width * found.height / found.width
     check_sheet(width, height)
     choice = LineChoice(pen, even, density, per_inch2, min_rank, ruled or 0.0, loose or 0.0)

@@ -123,7 +123,7 @@ def _text(tone: ToneFigures | None, lines: LineFigures, ink: float, as_json: boo
 
 
 def _hold(found: ToneFigures, max_rms: float | None, max_bias: float | None, max_stray: float | None) -> None:
-    """Raise ParameterError where a figure is beyond its limit; one line for all of them."""
+    """Raise ParameterError, which names them all, where figures are beyond their limits, percent."""
     from penink_cli.ground.errors import ParameterError
 
     limits = (

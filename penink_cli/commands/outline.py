@@ -8,12 +8,12 @@ import click
 
 from penink_cli.ground.errors import in_quotes
 from penink_cli.ground.streams import writing
-from penink_cli.options.common import LENGTH, Finite, filter_options, printer_option
+from penink_cli.options.common import LENGTH, Finite, filter_options, is_given, printer_option
 from penink_cli.options.inputs import read_edges
 
 
 class Point(click.ParamType):
-    """``X,Y`` in pixels."""
+    """``X,Y`` in pixels of the photo."""
 
     name = "X,Y"
 
@@ -32,7 +32,7 @@ class Point(click.ParamType):
 @click.command(name="outline")
 @filter_options
 @click.option("--width", type=LENGTH, required=True, help="Width of the picture on paper: 4in, 100mm, 288 (points).")
-@click.option("--pen", type=LENGTH, help="Draw with a technical pen of this width, the same from end to end.")
+@click.option("--pen", type=LENGTH, help="Draw with a technical pen: strokes of this width from end to end.")
 @click.option(
     "--weight",
     type=LENGTH,
@@ -46,9 +46,9 @@ class Point(click.ParamType):
     type=Finite(0, 1),
     default=0.0,
     metavar="S",
-    help="Only chains whose strength, the grey step across them, reaches this; 0 to 1.",
+    help="Only chains whose mean strength, the grey step across them, is at least S; 0 to 1.",
 )
-@click.option("--min-length", type=Finite(0), default=0.0, metavar="N", help="Only chains of so many pixels.")
+@click.option("--min-length", type=Finite(0), default=0.0, metavar="N", help="Only chains at least N pixels long.")
 @click.option(
     "--region",
     "regions",
@@ -71,7 +71,7 @@ def outline(
 ) -> None:
     """Turn discontinuity edges into smooth outline strokes.
 
-    Chains of edges become curves; they keep clear of one another, the strongest first.
+    Chains of edges become curves, the strongest first; each keeps clear of those before it.
 
     \b
     penink outline --width 4in --min-strength 0.2 photo.edges.json > outlines.strokes.jsonl
@@ -82,8 +82,10 @@ def outline(
     from penink_cli.illustration.drawing import outline_strokes
     from penink_cli.options.sheet import check_sheet
 
+    if pen is not None and is_given("weight"):
+        raise click.UsageError("give one of --pen and --weight")
     edges = read_edges(file or "-", max_pixels)
-    assert edges is not None  # which it is only where no file is named
+    assert edges is not None
     height = width * edges.height / edges.width
     check_sheet(width, height)
     choice = OutlineChoice(

@@ -32,8 +32,8 @@ def pack(
     """Pack an illustration and its members in one small file.
 
     FILE is an illustration's manifest; the files it names are found beside it. The archive is a ZIP: unzipped, it is
-    an illustration of loose files again, which draws the same strokes. With --seen-at it is made for a size, as what
-    `penink draw` packs is for its own.
+    an illustration of loose files again, which draws the same strokes. With --seen-at the archive is made for one size;
+    `penink draw -o NAME.penink` makes one for the size that it draws.
 
     \b
     penink pack keys.illustration.json -o keys.penink

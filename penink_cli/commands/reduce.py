@@ -23,7 +23,7 @@ from penink_cli.options.photographs import photo_limit, photo_options, read_phot
 @filter_options
 @photo_options
 @edges_option(required=False)
-@click.option("--factor", type=click.IntRange(1, 1000), metavar="N", help="Old samples a new one, along each axis.")
+@click.option("--factor", type=click.IntRange(1, 1000), metavar="N", help="Old samples to a new one, along each axis.")
 @click.option("--size", type=SIZE, help="The new grid.")
 @click.option("--auto", is_flag=True, help="The smallest grid within --max-error, with a sample in every region.")
 @click.option(
@@ -52,7 +52,7 @@ from penink_cli.options.photographs import photo_limit, photo_options, read_phot
     "photo_file",
     type=click.Path(allow_dash=True),
     metavar="FILE",
-    help="Fit to, and measure the error against, this photo as its blurring camera saw it, not to the samples read.",
+    help="Fit to this photo, and measure the error against it, with its camera's blur; not to the samples read.",
 )
 @click.option("--maxval", type=click.IntRange(1, 65535), metavar="N", help="White of the PGM.  [default: as read]")
 @threads_option
@@ -77,8 +77,8 @@ def reduce(
 ) -> None:
     """Reduce samples to a coarser grid without mixing across edges.
 
-    Each new sample speaks only for what it can reach. Near edges the samples are fitted so that their
-    enlargement, seen through a camera, comes as near as can be to the photo.
+    Each new sample is made of the old ones that it can reach without crossing an edge. Near edges samples are fitted,
+    so that their enlargement, blurred as the camera blurs, is as near to the photo as can be.
 
     \b
     penink extract-samples -e photo.edges.json photo.png \\

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     default=0,
     show_default=True,
     metavar="N",
-    help="Another hand, but for layers with the threshold rule.",
+    help="Each number is another hand; layers with the rule threshold have only one.",
 )
 @click.option(
     "--layer",
@@ -59,7 +59,7 @@ def render(
     """Draw an illustration anew for one size and one device.
 
     FILE is an illustration, packed (*.penink) or loose. Every layer is enlarged, outlined and blasted. A strokes file
-    has one colour: of an illustration in several, render each --layer.
+    has one colour: render each --layer of an illustration in several colours by itself.
 
     \b
     penink render keys.penink --width 24in --device-dpi 1200 | penink to-ps -o poster.eps
@@ -92,7 +92,7 @@ def render(
 
 
 def _number(illustration: Illustration, chosen: str) -> int:
-    """The place of the layer of that name, or of that number from 1."""
+    """The place, from 0, of the layer of that name or of that number from 1. Raises ParameterError."""
     names = [layer.name for layer in illustration.layers]
     if chosen in names:
         return names.index(chosen)

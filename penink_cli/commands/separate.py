@@ -48,15 +48,15 @@ class Range(click.ParamType):
     multiple=True,
     help="The region of the edge list that holds this point, in pixels of the photo; may be repeated.",
 )
-@edges_option(required=False)
+@edges_option(required=False, says="Its regions are those of --point.")
 @click.option(
     "--plate",
     metavar="NAME|N|COLOUR",
-    help="The plate of one ink: cyan, magenta, yellow, black; with --inks its colour or its place there, from 1.",
+    help="The plate of one ink: cyan, magenta, yellow or black; with --inks the ink's colour or its place, from 1.",
 )
 @plates_option
 @inks_options
-@click.option("--invert", is_flag=True, help="All but that; the tones of the two overlays add up to the photo's.")
+@click.option("--invert", is_flag=True, help="All but the layer: the tones of the two overlays add up to the photo's.")
 def separate(
     file: str | None,
     output: str | None,
@@ -75,11 +75,11 @@ def separate(
 ) -> None:
     """Make the overlay of one layer: grey where it is, white elsewhere.
 
-    What the layer is, is told by a mask, by a range of grey or by regions of an edge list. Overlays go
-    through the same filters as photos.
+    A mask, a range of grey or regions of an edge list say what belongs to the layer. Overlays go through the same
+    filters as photos.
 
-    A plate is the layer of one ink: how much of it, printed over the others, comes nearest to the photo's colours. All
-    plates go with the edges of the photo; blast them with --color, and each with another --turn.
+    A plate is the layer of one ink: as much of it as, printed over the others, comes nearest to the photo's colours.
+    The edges of the photo serve all plates; blast each with its --color and another --turn.
 
     \b
     penink separate keys.png --plate cyan -o cyan.pgm

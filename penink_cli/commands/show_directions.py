@@ -5,7 +5,7 @@ from __future__ import annotations
 import click
 
 from penink_cli.ground.streams import writing
-from penink_cli.options.common import POSITIVE, directions_option, edges_option, filter_options
+from penink_cli.options.common import POSITIVE, edges_option, filter_options
 from penink_cli.options.inputs import only_one_standard_input, read_directions, read_edges, warn_of_another_shape
 from penink_cli.options.photographs import photo_options, read_photo
 
@@ -14,7 +14,14 @@ from penink_cli.options.photographs import photo_options, read_photo
 @filter_options
 @photo_options
 @edges_option(required=False)
-@directions_option(required=True)
+@click.option(
+    "--directions",
+    "directions_file",
+    required=True,
+    type=click.Path(allow_dash=True),
+    metavar="FILE",
+    help="The direction field of the image.",
+)
 @click.option("--lines", type=click.IntRange(1, 1000), default=72, show_default=True, help="Along the longer side.")
 @click.option("--scale", type=POSITIVE, default=3.0, show_default=True, help="Size of a photo pixel on the screen.")
 def show_directions(
@@ -29,8 +36,8 @@ def show_directions(
 ) -> None:
     """Draw a photograph with its directions, to be looked at.
 
-    The result is SVG: the photo, pale, and short lines as strokes would lie, from blue (the form says so) to orange
-    (nothing is known, the hatch keeps its own angle).
+    The result is SVG: the photo, pale, and short lines as strokes would lie, from blue (the form is clear) to orange
+    (nothing is known, and hatching keeps its own angle).
 
     \b
     penink show-directions -e photo.edges.json --directions photo.directions.pgm photo.png -o photo.directions.svg

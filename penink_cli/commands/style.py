@@ -39,7 +39,7 @@ def list_styles(output: str | None, **_: Any) -> None:
 @click.argument("name", metavar="NAME|FILE", type=STYLE)
 @output_options
 def show(name: str, output: str | None, **_: Any) -> None:
-    """Write a style's file, to be changed and used; one of your own is checked on the way."""
+    """Write a style's file, to be changed and used; a file of your own is checked first."""
     from penink_cli.chain.words import check
     from penink_cli.formats import style as style_format
 

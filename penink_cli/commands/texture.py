@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 def texture() -> None:
     """List, show, make and import stroke textures.
 
-    A texture is a tile of strokes that repeats, each with a priority: light tones hold only those drawn first.
+    A texture is a tile of strokes that repeats. Each stroke has a priority: light tones hold only those drawn first.
 
     \b
     penink texture list
@@ -41,7 +41,7 @@ def list_textures(output: str | None, **_: Any) -> None:
 
 
 def describe(found: Texture, device_dpi: float | None) -> str:
-    """What there is to know of a texture, in lines of text."""
+    """A texture in lines of text: its tile, strokes, pens, the tones it reaches, its layers and its engraving."""
     from penink_cli.blasting.reach import reachable
 
     strokes = found.strokes
@@ -93,14 +93,18 @@ def show(name: str, as_file: bool, device_dpi: float | None, output: str | None,
 @texture.command()
 @click.argument("kind", type=click.Choice(sorted(KINDS)))
 @click.option("--angle", type=Finite(-360, 360), metavar="DEGREES", help="Direction, clockwise from the right.")
-@click.option("--spacing", type=Length(zero=True), help="Lines of one layer are nowhere closer.")
+@click.option(
+    "--spacing",
+    type=Length(zero=True),
+    help="Of hatching: the least distance of the lines of one layer. Of an engraving: the distance of its lines.",
+)
 @click.option("--pen", type=LENGTH, help="Width of the strokes.")
 @click.option("--finest", type=LENGTH, help="Of an engraving: least width of a line.")
 @click.option(
     "--lines",
     type=click.IntRange(1, 100_000),
     metavar="N",
-    help="Of an engraving: so many lines to the picture's width, whatever its size, instead of --spacing.",
+    help="Of an engraving: N lines to the picture's width, whatever its size, instead of --spacing.",
 )
 @click.option(
     "--crosses",
@@ -116,7 +120,7 @@ def show(name: str, as_file: bool, device_dpi: float | None, output: str | None,
     help="Of contour-rings: their centre, in parts of the picture's width and height.",
 )
 @click.option("--layers", type=click.IntRange(1, 4), metavar="1…4", help="Directions of hatching.")
-@click.option("--seed", type=click.IntRange(0, 2**63 - 1), metavar="N", help="Another hand.")
+@click.option("--seed", type=click.IntRange(0, 2**63 - 1), metavar="N", help="Each number is another hand.")
 @click.option("--name", type=TEXT, help="The texture's name.  [default: KIND]")
 @output_options
 def make(
@@ -134,10 +138,10 @@ def make(
     output: str | None,
     **_: Any,
 ) -> None:
-    """Make a texture of a KIND, each of whose prefixes is evenly spaced.
+    """Make a texture of a KIND, evenly spaced in every tone.
 
-    Takes some seconds. Without options it is the one that comes with the program. An option that means nothing to
-    the KIND is refused.
+    This takes some seconds. Without options the texture is the one that comes with the program. An option that means
+    nothing to the KIND is refused.
     """
     from penink_cli.textures.make import make as make_texture
 
@@ -171,17 +175,19 @@ def import_svg(
 ) -> None:
     """Make a texture of an SVG drawing.
 
-    Its paths, lines and shapes become strokes, in their order, which is the priority: what is drawn first comes
-    first. The drawing's size is the tile's. What leaves no ink is left out, as are text and images: what is invisible
-    or white, and a background. Turn text to paths first.
+    Its paths, lines and shapes become strokes; their order in the drawing is their priority. The drawing's size is the
+    tile's. What is invisible or white, a background, text and images are left out: turn text to paths first.
 
-    With --oriented they are examples, of the size they are drawn in, that `blast --directions` bends along the form.
+    With --oriented the strokes are examples that `blast --directions` bends along the form, in the size that they are
+    drawn in.
 
     \b
     penink texture import --oriented hair.svg -o hair.texture.json
     """
     from penink_cli.formats import svg_texture
 
+    if whole and oriented:
+        raise click.UsageError("--whole is of a tile, and does not go with --oriented")
     source = source_name(file)
     with reading(file) as stream:
         title = name or (_title(source) if file and file != "-" else "imported")
@@ -191,7 +197,7 @@ def import_svg(
 
         drawing, left_out = as_set(drawing)
         if left_out and len(drawing.strokes):
-            warn(f"{source}: {left_out} of the paths left out, which lead nowhere from left to right")
+            warn(f"{source}: {left_out} of the paths left out, which lead less than 1 pt from left to right")
     if not len(drawing.strokes):
         raise ParameterError(f"no stroke {'from left to right ' * oriented}in the drawing").from_source(source)
     from penink_cli.formats import texture as texture_format

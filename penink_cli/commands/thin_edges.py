@@ -10,6 +10,7 @@ from penink_cli.options.common import (
     LENGTH,
     Finite,
     filter_options,
+    is_given,
     reporter,
     threads_option,
     verbose_option,
@@ -22,14 +23,14 @@ from penink_cli.options.photographs import photo_options, read_photo
 @filter_options
 @photo_options
 @click.option(
-    "-e", "--edges", "edges_file", type=click.Path(allow_dash=True), metavar="FILE", help="The edge list, as FILE is."
+    "-e", "--edges", "edges_file", type=click.Path(allow_dash=True), metavar="FILE", help="The edge list, as of FILE."
 )
 @click.option(
     "--photo",
     "photo_file",
     type=click.Path(allow_dash=True),
     metavar="FILE",
-    help="The photo of the edges: a chain is worth what it saves of the difference to it.",
+    help="The photo of the edges: a chain is worth the error against it that the chain saves.",
 )
 @click.option(
     "--worth",
@@ -42,7 +43,7 @@ from penink_cli.options.photographs import photo_options, read_photo
     "--keep-strength", type=Finite(0, 1), metavar="S", help="Keep chains that outline --min-strength would draw."
 )
 @click.option(
-    "--keep-length", type=Finite(0), default=0.0, metavar="N", help="Of these, keep only chains of so many pixels."
+    "--keep-length", type=Finite(0), default=0.0, metavar="N", help="With --keep-strength: chains of N pixels or more."
 )
 @click.option(
     "--keep-region",
@@ -70,8 +71,8 @@ def thin_edges(
 ) -> None:
     """Leave out the edges that are not worth their bytes.
 
-    FILE is an edge list, as is that of -e. With --photo each chain is judged by the error that it saves; else the
-    strongest and longest chains that hold six tenths of the edges stay. Extract and reduce the samples afterwards: they
+    FILE, or that of -e, is an edge list. With --photo each chain is judged by the error that it saves. Without it the
+    strongest and longest chains stay, up to six tenths of the edges. Extract and reduce the samples afterwards: they
     make up for what is gone.
 
     \b
@@ -88,6 +89,8 @@ def thin_edges(
         raise click.UsageError("give the edges as FILE or by -e")
     if photo_file is None and (worth is not None or seen_at is not None):
         raise click.UsageError(f"{'--seen-at' if worth is None else '--worth'} goes with --photo")
+    if keep_strength is None and is_given("keep_length"):
+        raise click.UsageError("--keep-length goes with --keep-strength")
     path = file if edges_file is None else edges_file
     only_one_standard_input(path, photo_file or "")
     edges = read_edges("-" if path is None else path, max_pixels)

@@ -22,9 +22,9 @@ def to_html(
     """Write an illustration as one web page that draws itself.
 
     FILE is an illustration, packed (*.penink) or loose. The page holds its small representation and a program that
-    draws it with fresh strokes at every magnification; it needs no server and fetches nothing. The wheel, two
-    fingers or + and - zoom, the arrows move. The strokes are those of blast's rule "threshold", or follow the layer's
-    directions, or swell as an engraving's, with the telling lines that there is room for; rules and seeds do not
+    draws it with fresh strokes at every magnification; it needs no server and fetches nothing. The wheel, two fingers
+    or + and - zoom, the arrows move. The strokes are those of blast's rule "threshold", or they follow the layer's
+    directions, or swell as those of an engraving; telling lines are drawn where there is room. Rules and seeds do not
     matter.
 
     \b

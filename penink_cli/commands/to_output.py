@@ -1,4 +1,4 @@
-"""The subcommand of an output that brings none of its own: made from its line in `outputs/registry.py`."""
+"""Subcommands of the outputs that have no module here: each is made from its line in `outputs/registry.py`."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def subcommand(name: str) -> click.Command:
 
 
 def _decorator(option: Option) -> Any:
-    """click's form of an option."""
+    """The click option for an option of an output."""
     word = f"--{option.name.replace('_', '-')}"
     if option.default is False:
         return click.option(word, option.name, is_flag=True, help=option.help)

@@ -44,7 +44,7 @@ def _pixels(
     from penink_cli.outputs.page import lay_out
     from penink_cli.outputs.raster import cover
 
-    if device_dpi is None and not png:  # nobody looks at it: what the strokes themselves cover
+    if device_dpi is None and not png:  # a PGM goes to other programs: it has what the strokes themselves cover
         device_dpi = 0.0
     layers = as_printed(read_layers(files), device_dpi)
     page = lay_out(layers, paper, margin, landscape, at)
@@ -107,8 +107,8 @@ def _options(function: Any) -> Any:
 def to_pgm(output: str | None, **options: Any) -> None:
     """Draw strokes into a grey image, by the area that ink covers.
 
-    The image is PGM, or PNG where the name of -o ends in .png (to-png writes PNG anywhere). Several
-    FILEs are drawn over one another.
+    The image is PGM, or PNG where the name of -o ends in .png; to-png always writes PNG. Several FILEs are drawn over
+    one another.
 
     \b
     penink to-pgm --dpi 300 photo.strokes.jsonl | penink enlarge --scale 0.5 -o small.pgm
@@ -123,7 +123,8 @@ def to_pgm(output: str | None, **options: Any) -> None:
 def to_png(output: str | None, **options: Any) -> None:
     """Draw strokes into a PNG image, by the area that ink covers.
 
-    The same picture as to-pgm's. Several FILEs are drawn over one another; coloured ones are transparent inks.
+    Several FILEs are drawn over one another; coloured ones are transparent inks. Strokes are as wide as on the printer
+    that their file names, unless --device-dpi says otherwise; those of to-pgm are not.
 
     \b
     penink to-png --dpi 300 photo.strokes.jsonl -o photo.png

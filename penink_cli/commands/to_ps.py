@@ -5,10 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 import click
-from click.core import ParameterSource
 
 from penink_cli.ground.streams import writing
-from penink_cli.options.common import Finite, output_options
+from penink_cli.options.common import Finite, is_given, output_options
 from penink_cli.options.layers import colour_option, colours_of, files_argument, page_options, read_layers
 
 OF_STROKES = ("paper", "margin", "landscape", "at", "colours", "device_dpi", "compress", "separations", "preview")
@@ -61,10 +60,10 @@ def to_ps(
     order that makes the file small, and coloured ones cover what lies below; to-pdf has transparent inks.
 
     With --self the printer does the work: the small representation itself is written, and a program that draws it with
-    fresh strokes for the size at which it is placed and the device's resolution. They are those of blast's rule
+    fresh strokes for the size at which it is placed and the device's resolution. The strokes are those of blast's rule
     "threshold", or lines that swell, straight or in rings, and the telling lines that there is room for; the layers'
-    directions, rules and seeds do not matter. For print shops, and for
-    whatever converts PostScript to something else first, write strokes.
+    directions, rules and seeds do not matter. Print shops, and programs that convert PostScript to something else, are
+    better given strokes.
 
     \b
     penink blast --texture crosshatch --width 4in photo.pgm | penink to-ps -o photo.eps
@@ -98,14 +97,16 @@ def _refuse_what_is_ignored(self_drawing: bool) -> None:
     """Raise UsageError for an option that says nothing with --self, or nothing without it."""
     context = click.get_current_context()
     for option in context.command.params:
-        given = option.name and context.get_parameter_source(option.name) is not ParameterSource.DEFAULT
-        if given and option.name in (OF_STROKES if self_drawing else OF_SELF):
+        if option.name in (OF_STROKES if self_drawing else OF_SELF) and is_given(option.name):
             why = "is of strokes, and does not go with --self" if self_drawing else "goes with --self"
             raise click.UsageError(f"{option.opts[0]} {why}")
 
 
 def write_self_drawing(files: tuple[str, ...], output: str | None, packing: str, max_pixels: int) -> None:
-    """The illustration in the one file given as an EPS that draws itself."""
+    """Write the illustration in the one file given as an EPS that draws itself. Raises UsageError for several files.
+
+    packing: as of `selfdrawing.postscript.write`.
+    """
     from penink_cli.options.common import warn
     from penink_cli.options.illustrations import read_illustration
     from penink_cli.selfdrawing import postscript as selfdrawing

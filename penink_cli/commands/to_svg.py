@@ -9,7 +9,7 @@ import click
 
 from penink_cli.ground.codes import code_of
 from penink_cli.ground.streams import reading, source_name, writing
-from penink_cli.options.common import LENGTH, output_options, verbose_option
+from penink_cli.options.common import LENGTH, is_given, output_options, verbose_option
 from penink_cli.options.inputs import only_one_standard_input
 from penink_cli.options.layers import (
     as_printed,
@@ -38,13 +38,13 @@ if TYPE_CHECKING:
     "--centre-lines",
     "--center-lines",
     is_flag=True,
-    help="For a plotter: of strokes that swell their middle, not their outline.",
+    help="For a plotter: draw the middle line of a stroke that swells, not its outline.",
 )
 @click.option(
     "--passes",
     type=LENGTH,
     metavar="PEN",
-    help="For a plotter: strokes that swell as parallel lines that make their width with a pen of this one.",
+    help="For a plotter: draw a stroke that swells as parallel lines of a pen of this width, which make its own.",
 )
 @click.option("--merge", is_flag=True, help="One path a width: a smaller file, which drawing programs open faster.")
 @click.option(
@@ -58,7 +58,7 @@ if TYPE_CHECKING:
     "--split-length",
     type=LENGTH,
     metavar="LENGTH",
-    help="Begin a new layer, before which an AxiDraw waits, where a pen has drawn so much.  [default: as --pens says]",
+    help="After so much line of a pen begin a new layer, before which an AxiDraw waits.  [default: as --pens says]",
 )
 @travel_options
 @verbose_option
@@ -90,12 +90,12 @@ def to_svg(
 ) -> None:
     """Write strokes as SVG, for drawing programs, the web, plotters.
 
-    Each stroke is a path of its real width, in millimetres; of one that swells it is the outline,
-    filled. Several FILEs are layers, the first at the bottom, and Inkscape and vpype see them as
-    layers. With --order a plotter draws them with little travel between them.
+    Each stroke is a path of its real width, in millimetres; a stroke that swells is its outline, filled. Several FILEs
+    are layers, the first at the bottom, and Inkscape and vpype see them as layers. With --order strokes follow one
+    another so that a plotter travels little.
 
-    The time that is said with --speed, --lift, --accel, --travel-speed or --verbose is that of a plotter that speeds
-    up, slows down for corners and lifts its pen: an AxiDraw's, unless they say otherwise.
+    With --speed, --lift, --accel, --travel-speed or --verbose the time that a plotter takes is told: one that speeds
+    up, slows down for corners and lifts its pen, as an AxiDraw does, unless these options say otherwise.
 
     \b
     penink to-svg photo.strokes.jsonl -o photo.svg
@@ -103,6 +103,8 @@ def to_svg(
     """
     if centre_lines and passes is not None:
         raise click.UsageError("give one of --centre-lines and --passes")
+    if not order and is_given("join"):
+        raise click.UsageError("--join goes with --order")
     if pens_file is not None and pen is not None:
         raise click.UsageError("--pens says what --pen says")
     only_one_standard_input(*(files or ("-",)), pens_file)

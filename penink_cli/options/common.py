@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterable, Iterator
 from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 import click
+from click.core import ParameterSource
 
 from penink_cli.ground import streams
 from penink_cli.ground.errors import ParameterError, in_quotes, printable
@@ -150,6 +151,12 @@ class OutputFile(click.Path):
         super().__init__(allow_dash=True)
 
 
+def is_given(name: str) -> bool:
+    """Whether the running command was given this parameter; outside of a command each counts as given."""
+    context = click.get_current_context(silent=True)
+    return context is None or context.get_parameter_source(name) is not ParameterSource.DEFAULT
+
+
 def is_file(name: str) -> bool:
     """Whether a name is a file's and not a shipped texture's or style's: it has a dot or a slash, or is ``-``."""
     return name == "-" or "/" in name or "." in name
@@ -225,7 +232,7 @@ def output_options(function: F) -> F:
             type=click.IntRange(1),
             default=MAX_PIXELS,
             metavar="N",
-            help="Refuse images that declare more pixels.  [default: 100000000]",
+            help="Refuse images that declare more pixels.  [default: 100000000, of photographs 250000000]",
         ),
         click.option(
             "-o",
@@ -247,8 +254,8 @@ def printer_option(
     return click.option("--device-dpi", type=DeviceDpi(), default="600", show_default=True, metavar="N|none", help=says)
 
 
-def edges_option(required: bool) -> Callable[[F], F]:
-    """-e/--edges FILE: the discontinuity edges of the image."""
+def edges_option(required: bool, says: str = "Without it nothing is kept sharp.") -> Callable[[F], F]:
+    """-e/--edges FILE: the discontinuity edges of the image; says: what they do, where they are not required."""
     return click.option(
         "-e",
         "--edges",
@@ -256,19 +263,7 @@ def edges_option(required: bool) -> Callable[[F], F]:
         required=required,
         type=click.Path(allow_dash=True),
         metavar="FILE",
-        help="The edge list of the image." + ("" if required else " Without it nothing is kept sharp."),
-    )
-
-
-def directions_option(required: bool) -> Callable[[F], F]:
-    """--directions FILE: the direction field of the image."""
-    return click.option(
-        "--directions",
-        "directions_file",
-        required=required,
-        type=click.Path(allow_dash=True),
-        metavar="FILE",
-        help="The direction field of the image." + ("" if required else " Without it strokes lie at fixed angles."),
+        help="The edge list of the image." + ("" if required else f" {says}"),
     )
 
 

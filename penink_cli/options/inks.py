@@ -7,11 +7,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
-from click.core import ParameterSource
 
 from penink_cli.ground.codes import Colour, code_of
 from penink_cli.ground.errors import in_quotes
-from penink_cli.options.common import Finite
+from penink_cli.options.common import Finite, is_given
 from penink_cli.options.layers import COLOUR
 
 if TYPE_CHECKING:
@@ -111,9 +110,8 @@ def inks_options(function: F) -> F:
 
 def refuse_without_plate() -> None:
     """Raise UsageError where an option is given that concerns plates only."""
-    context = click.get_current_context()
     for name, word in (("inks", "inks"), ("paper_colour", "paper-color"), ("black", "black")):
-        if context.get_parameter_source(name) is not ParameterSource.DEFAULT:
+        if is_given(name):
             raise click.UsageError(f"--{word} goes with --plate and --plates")
 
 

@@ -5,13 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import click
-from click.core import ParameterSource
 
 from penink_cli.ground import streams
 from penink_cli.ground.errors import FormatError, PeninkError
 from penink_cli.ground.shapes import same_shape
 from penink_cli.options import remembered
-from penink_cli.options.common import warn
+from penink_cli.options.common import is_given, warn
 from penink_cli.options.photographs import PHOTO_PIXELS
 
 if TYPE_CHECKING:
@@ -22,9 +21,7 @@ ENLARGED_PIXELS = 4 * PHOTO_PIXELS  # what the chain makes of the largest photog
 
 def enlarged_limit(max_pixels: int) -> int:
     """The pixels that an enlarged image may have, read or written: --max-pixels if given, else ENLARGED_PIXELS."""
-    context = click.get_current_context()
-    chosen = context.get_parameter_source("max_pixels") is not ParameterSource.DEFAULT
-    return max_pixels if chosen else ENLARGED_PIXELS
+    return max_pixels if is_given("max_pixels") else ENLARGED_PIXELS
 
 
 def read_grey(path: str | None, max_pixels: int) -> GreyImage:

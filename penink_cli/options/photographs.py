@@ -8,12 +8,11 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
-from click.core import ParameterSource
 
 from penink_cli.ground import streams
 from penink_cli.ground.errors import in_quotes
 from penink_cli.options import remembered
-from penink_cli.options.common import warn
+from penink_cli.options.common import is_given, warn
 
 if TYPE_CHECKING:
     from penink_cli.formats.photo.choices import Choices
@@ -120,10 +119,7 @@ def photo_words() -> str:
 
 def photo_limit(max_pixels: int) -> int:
     """The pixels that a photograph, or samples of its size, may have: --max-pixels if given, else PHOTO_PIXELS."""
-    context = click.get_current_context(silent=True)
-    if context is None or context.get_parameter_source("max_pixels") is not ParameterSource.DEFAULT:
-        return max_pixels
-    return PHOTO_PIXELS
+    return max_pixels if is_given("max_pixels") else PHOTO_PIXELS
 
 
 def read_photo(path: str | None, max_pixels: int) -> GreyImage:

@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import click
-from click.core import ParameterSource
-
 from penink_cli.ground.errors import LimitError, ParameterError
 from penink_cli.ground.papers import MM
-from penink_cli.options.common import warn
+from penink_cli.options.common import is_given, warn
 
 PIXELS_PER_PT = 2.0  # of the grey that a sheet is blasted from, along each axis
 SHEET_PIXELS = 50_000_000  # of that grey, unless --max-pixels is given: 2400 square inches, 4 × 4 feet
@@ -35,8 +32,7 @@ def check_sheet(width_pt: float, height_pt: float, max_pixels: int | None = None
 
 def check_area(width_pt: float, height_pt: float, max_pixels: int) -> None:
     """Raise LimitError for a sheet that is blasted from too many pixels: --max-pixels if given, else SHEET_PIXELS."""
-    context = click.get_current_context(silent=True)
-    if context and context.get_parameter_source("max_pixels") is ParameterSource.DEFAULT:
+    if not is_given("max_pixels"):
         max_pixels = SHEET_PIXELS
     pixels = round(width_pt * height_pt * PIXELS_PER_PT**2)
     if pixels > max_pixels:
