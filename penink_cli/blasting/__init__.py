@@ -7,6 +7,7 @@ blast.blast             what is to be drawn as a task.Task, for a rule of rules/
     marks                   small dark things on bare paper, filled first
 rules/                  best, or what --rule says
   solids                what is darker than hatching can be, filled
+    small                   small dark things on any ground, black as a whole
     reserved                where it is not quite black: white lines along the form, hatched as a negative
     bordered                strokes along the border and beside white lines (gaps), rows within
   hatching.hatch_sheet  textures of layers: a closed loop on the tone

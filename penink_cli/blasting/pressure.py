@@ -11,10 +11,12 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import numpy.typing as npt
 
 from penink_cli.blasting import curves
 from penink_cli.blasting.sheet import SIGMA_PT, Cells, Sheet, look_up
 from penink_cli.composition.filters import Picture, blurred, by_rows
+from penink_cli.ground.device import MEAN
 from penink_cli.ground.model import Floats, Ints, Strokes
 
 #: σ of the Gaussian for the tone at a knot and for the tone around it, points; a tone added to both.
@@ -28,10 +30,13 @@ TOLERANCE_PT = 0.08
 #: A stroke whose widths differ by no more than this is drawn with one. Each side of it is then off by half a
 #: dot of 600 to the inch.
 EVEN_PT = 0.1
-#: Rounds in which the widths are corrected, and the most of a width that a round changes.
+#: Rounds in which the widths are corrected, and the most of a width that a round changes. The last is for the mean.
 ROUNDS, CORRECTION = 4, 0.3
 #: Errors are taken so many times: what a printer adds to a stroke does not swell with it, and strokes overlap.
 AGAINST = np.float32(1.5)
+#: What is left on the mean of the sheet all strokes make good alike in the last round: each is so much of its width
+#: wider, at the most, for ink that grows by one part of it in OVERLAP, since strokes overlap.
+EVENLY, OVERLAP = 0.04, 1.2
 #: Errors are held against the tone, or against this where the tone is less.
 SINGLE = 0.1
 
@@ -55,6 +60,8 @@ def swollen(sheet: Sheet, strokes: Strokes, tone: Floats, swell: float) -> Strok
     split, owner = _split(strokes, factor, sheet)
     knots = split.points[np.repeat(split.first[:-1], np.diff(split.knots)) + 3 * curves.ramp(np.diff(split.knots))]
     own = strokes.widths[owner] * look_up(factor, knots, sheet.width, sheet.height)
+    sheet.clear()
+    there = _mean(sheet.ink)
     correction: Cells = np.ones((sheet.rows, sheet.columns), np.float32)
     for turn in range(ROUNDS + 1):
         widths = own * look_up(correction, knots, sheet.width, sheet.height)
@@ -63,12 +70,33 @@ def swollen(sheet: Sheet, strokes: Strokes, tone: Floats, swell: float) -> Strok
             break
         sheet.clear()
         _ink(sheet, drawn)
+        if turn == ROUNDS - 1:
+            correction *= np.float32(1 + _evenly(sheet, there, _mean(widths)))
+            continue
         seen = sheet.spread(sheet.error()) / sheet.spread(np.maximum(sheet.seen(sheet.tone), np.float32(SINGLE)))
         correction = correction * (1 + np.clip(AGAINST * seen, np.float32(-CORRECTION), np.float32(CORRECTION)))
     drawn = _simpler(strokes, drawn)
     sheet.clear()
     _ink(sheet, drawn)
     return drawn
+
+
+def _evenly(sheet: Sheet, there: float, width: float) -> float:
+    """The part of their width by which strokes are to be wider so that the sheet, on the mean, has its tone.
+
+    there: the mean ink that is none of theirs. width: of theirs, on the mean, to which a device adds its gain.
+
+    Lines and blacks on light ground have nothing beside them to pay with.
+    """
+    drawn = _mean(sheet.ink)
+    grows = OVERLAP * (1 + MEAN * sheet.gain_pt / width)
+    part = grows * (_mean(sheet.tone) - drawn) / max(drawn - there, SINGLE * SINGLE)
+    return min(max(part, -EVENLY), EVENLY)
+
+
+def _mean(values: npt.NDArray[np.floating]) -> float:
+    """The mean by way of whole numbers, whose sum is the same in any order."""
+    return int(np.rint(values * (1 << 20)).astype(np.int64).sum()) / (values.size << 20)
 
 
 def _simpler(strokes: Strokes, swelling: Strokes) -> Strokes:

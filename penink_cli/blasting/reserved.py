@@ -12,12 +12,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from penink_cli.blasting import curves, hatching, marks, polylines, walls
+from penink_cli.blasting import curves, hatching, marks, polylines, small, walls
 from penink_cli.blasting.form import Form
 from penink_cli.blasting.gaps import Gaps
 from penink_cli.blasting.sheet import CELL_PT, Cells, Sheet, look_up, resample
 from penink_cli.composition.filters import Picture, blurred
-from penink_cli.ground.masks import parts, sizes
+from penink_cli.ground.masks import near, parts, sizes
 from penink_cli.ground.model import EdgeList, HatchLayer, Strokes
 
 #: Width of a white line, points.
@@ -51,7 +51,10 @@ def white_lines(
     large = sizes(part, count, part > 0) >= ALONE_PT2 / CELL_PT**2
     large[0] = False
     white = np.where(large[part], np.minimum(white, np.float32(MOST)), np.float32(0))
-    room = np.where(within > 0.99, white, np.float32(0))
+    dark, reach = value > marks.LEVEL, small.HALF_PT * value.shape[1] / sheet.width
+    opened = near(near(dark, reach, threads=sheet.threads), reach, threads=sheet.threads)  # small things are black
+    broad = resample(opened.astype(np.float64), sheet.rows, sheet.columns)
+    room = np.where((within > 0.99) & (broad > 0.5), white, np.float32(0))
     if not (room > 0).any():
         return None
     negative = Sheet(room.astype(np.float64), sheet.width, sheet.height, 0.0, sheet.threads)

@@ -14,7 +14,7 @@ from functools import partial
 
 import numpy as np
 
-from penink_cli.blasting import bordered, marks
+from penink_cli.blasting import bordered, marks, small
 from penink_cli.blasting.gaps import Gaps
 from penink_cli.blasting.light import LightThings
 from penink_cli.blasting.sheet import Cells, resample
@@ -107,7 +107,10 @@ def _dark(
     close: what is close to small light things, where there are any.
     alone: the only places that may be filled, None for all.
     """
-    value, smooth, begins = _values(tone, px, black, close, alone is None, threads)
+    h, w = tone.shape
+    rows, columns = np.arange(h) * ink.shape[0] // h, np.arange(w) * ink.shape[1] // w
+    there = ink[rows][:, columns]
+    value, smooth, begins = _values(tone, px, black, close, alone is None, there, threads)
     if alone is not None:
         value[~alone] = 0.0
     core = smooth > begins
@@ -122,9 +125,7 @@ def _dark(
     part, count = parts(inside)
     area, size = (sizes(part, count, mask) for mask in (core, inside))
     keep = area >= LEAST_PT2 * px * px
-    h, w = tone.shape
-    rows, columns = np.arange(h) * ink.shape[0] // h, np.arange(w) * ink.shape[1] // w
-    keep &= sizes(part, count, (ink > marks.INKED)[rows][:, columns]) < marks.INKED * size
+    keep &= sizes(part, count, there > marks.INKED) < marks.INKED * size
     if blots is not None:
         keep &= sizes(part, count, blots) < 0.5 * area
     keep[0] = False
@@ -134,9 +135,13 @@ def _dark(
 
 
 def _values(
-    tone: Floats, px: float, black: tuple[float, float], close: marks.Mask | None, everywhere: bool, threads: int
-) -> tuple[Picture, Picture, Picture]:
-    """How black it is, of which more than `marks.LEVEL` is; the tone, smoothed; the tone that black begins with."""
+    tone: Floats, px: float, black: tuple[float, float], close: marks.Mask | None, everywhere: bool, ink: Cells,
+    threads: int,
+) -> tuple[Picture, Picture, Picture]:  # fmt: skip
+    """How black it is, of which more than `marks.LEVEL` is; the tone, smoothed; the tone that black begins with.
+
+    ink: (h, w) what lies there already.
+    """
     tones: Picture = tone.astype(np.float32)  # of single precision: the whole sheet is looked at several times
     fall = FALLS_PT * px
     smooth = blurred(tones, SMOOTH_PT * px, threads)
@@ -161,6 +166,10 @@ def _values(
     value = by_rows(blackness, tones, smooth, begins, falls, threads=threads)
     if close is not None:
         np.copyto(value, tones, where=close & falls)  # smoothed, it would be smaller
+    if black[1] < black[0]:
+        by_itself = small.black_from(smooth, ink, px, threads)
+        np.maximum(value, smooth - by_itself + marks.LEVEL, out=value)
+        begins = np.minimum(begins, by_itself)
     return value, smooth, begins
 
 

@@ -1,7 +1,8 @@
 """A photograph to the grey that a drawing of it is made from: the stages of composition in their order.
 
     colours -> rim left out -> grey by a mix -> black and white points -> base and detail
-            -> base exposed -> detail raised -> relief given ink -> ends -> deep shades black, smooth lights bare
+            -> base exposed -> detail raised -> relief given ink -> ends -> small darks as dark as they were
+            -> deep shades black, smooth lights bare
             -> faded out where a mask says
 
 Lengths are points on paper, at the size that the picture is composed for; grey 0 is ink and 1 is paper.
@@ -21,6 +22,7 @@ from penink_cli.composition import detail as raising
 from penink_cli.composition import exposure, mixing, recolouring
 from penink_cli.composition._compiled import tones
 from penink_cli.composition.filters import Picture, blurred, by_pixels, looked_up, shrunk
+from penink_cli.composition.small import with_small_darks
 from penink_cli.ground.errors import ParameterError
 from penink_cli.ground.model import ColourImage, GreyImage
 
@@ -201,7 +203,7 @@ def _composed(
     carved *= np.float32(min(key, 1.0))
     result = raising.raised(detail, exposed, slopes, lifted, carved, choice.detail, noise, pt, threads)
     del detail, exposed, slopes, lifted
-    result = _stretched(result, _INK, _PAPER, threads)
+    result = with_small_darks(_stretched(result, _INK, _PAPER, threads), grey, pt, threads)
     result = _blank(_sunk(result, pt, threads), carved, _LIGHT_FROM, _BARE, threads=threads)
     paper = int((grey > _PAGE_PAPER).sum()) / grey.size
     if paper > _PAGE:

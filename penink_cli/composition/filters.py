@@ -80,6 +80,28 @@ def gaussian(sigma: float) -> Picture:
     return np.array([v / total for v in w], np.float32)
 
 
+def lowest(picture: Picture, reach: int) -> Picture:
+    """The least value of picture (h, w) within so many pixels of each one, which is an octagon."""
+    slant = min(reach - math.floor(reach * 0.414 + 0.5), reach - 1)
+    out = np.pad(picture, reach, mode="edge")
+    for count, down, across in (
+        (2 * (reach - slant), 1, 0), (2 * (reach - slant), 0, 1), (slant, 1, 1), (slant, 1, -1)
+    ):  # fmt: skip
+        have = 0  # steps that each value has looked ahead
+        while have < count:
+            by = min(have + 1, count - have)
+            a, b = by * down, by * across
+            h, w = out.shape
+            out = np.minimum(out[: h - a, max(0, -b) : w - max(0, b)], out[a:, max(0, b) : w - max(0, -b)])
+            have += by
+    return np.ascontiguousarray(out)
+
+
+def closed(picture: Picture, reach: int) -> Picture:
+    """The picture (h, w) without what is darker than all around it and nowhere broader than 2 · reach pixels."""
+    return lowest(-lowest(-picture, reach), reach)
+
+
 def looked_up(values: Picture, table: npt.NDArray[np.float64], low: float = 0.0, high: float = 1.0) -> Picture:
     """A function of values (h, w), given by a table (n,) at even steps from low to high; linear in between."""
     scale = (len(table) - 1) / (high - low)

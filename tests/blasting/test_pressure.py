@@ -137,3 +137,17 @@ def test_form_hatches_nothing_over_its_blacks():
     rest = drawn.taken(drawn.widths != PEN_PT)
     assert coverage(rest, 576, 576)[90:230, 90:230].mean() < 0.06
     assert coverage(drawn, 1152, 1152)[163:477, 163:477].min() == 1.0
+
+
+def test_what_lines_on_paper_add_all_strokes_give_back():
+    """Lines on bare paper have no hatching beside them to pay with: the mean of the sheet is right none the less."""
+    y, x = (np.mgrid[:288, :288] + 0.5) / 288
+    tone = np.where(x < 0.5, 0.0, 0.3 + 0.3 * y)
+    at = np.arange(10.0, 140.0, 10.0)
+    ruled = [np.array([[10.0, a], [30.0, a], [45.0, a], [60.0, a]]) for a in at]
+    lines = Strokes.of(SIDE, SIDE, ruled, [0.15] * len(ruled))
+    drawn = blast(tone, SIDE, SIDE, None, find_texture("form"), outlines=lines, swell=1.0, device_dpi=None)
+    ink = coverage(Strokes.joined([lines, drawn]), 576, 576).astype(float)
+    added = coverage(lines, 576, 576).mean()
+    assert added > 0.0035
+    assert abs(ink.mean() - tone.mean()) < 0.35 * added
