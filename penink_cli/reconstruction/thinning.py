@@ -2,8 +2,9 @@
 
 A picture is reconstructed twice from a grid as fine as a drawing of a width needs: with all edges and with none. Near
 edges the difference of the squared errors is what edges save. The saving at each place belongs to the nearest chain. A
-chain that saves less than so many squared grey levels a bit is dropped. Where there is no picture, strong and long
-chains stay.
+chain that saves less than so many squared grey levels a bit is dropped. No chain saves more than there is error without
+edges: those that could not be worth it even so are left out of the first picture, which takes most of the time. Where
+there is no picture, strong and long chains stay.
 """
 
 from __future__ import annotations
@@ -19,9 +20,9 @@ from penink_cli.ground.gaussian import smoothed
 from penink_cli.ground.model import EdgeList, Ints
 from penink_cli.reconstruction.camera import camera_blur
 from penink_cli.reconstruction.enlarge import reconstruct
-from penink_cli.reconstruction.extraction import extract_samples
+from penink_cli.reconstruction.extraction import contamination, extract_samples
 from penink_cli.reconstruction.grid import SEEN_PT, SEEN_PX, VIEW_PX
-from penink_cli.reconstruction.reduction import reduce
+from penink_cli.reconstruction.reduction import Reduction
 from penink_cli.reconstruction.shrinking import shrunk
 
 Grey32 = npt.NDArray[np.float32]
@@ -74,12 +75,20 @@ def thin_edges(
         return edges
     chains = stretches(edges)
     bits = np.array([CHAIN_BITS + EDGE_BITS * len(chain) for chain in chains])
+    stay = np.zeros(len(chains), bool)
+    if kept is not None:
+        stay = np.array([bool(kept[chain].any()) for chain in chains])
     if photo is None:
         stays = _strongest(edges, chains)
     else:
-        stays = _saved(edges, chains, photo, seen_at, threads) > worth * bits
-    if kept is not None:
-        stays |= np.array([bool(kept[chain].any()) for chain in chains])
+        savings = _Savings(edges, chains, photo, seen_at, threads)
+        hopeful = (savings.of_none > worth * bits) | stay
+        stays = savings.of(_only(edges, chains, hopeful)) > worth * bits
+    return _only(edges, chains, stays | stay)
+
+
+def _only(edges: EdgeList, chains: list[list[int]], stays: npt.NDArray[np.bool_]) -> EdgeList:
+    """The edges of the chains (c,) that stay, and the vertices that these have."""
     chosen = np.array(sorted(e for chain, stay in zip(chains, stays.tolist()) if stay for e in chain), np.int64)
     used, ends = np.unique(edges.edges[chosen], return_inverse=True)
     strength = None if edges.strength is None else edges.strength[chosen]
@@ -102,40 +111,49 @@ def _strongest(edges: EdgeList, chains: list[list[int]]) -> npt.NDArray[np.bool_
     return stays
 
 
-def _saved(
-    edges: EdgeList, chains: list[list[int]], photo: Grey32, seen_at: float, threads: int | None
-) -> npt.NDArray[np.float64]:
-    """What each chain saves (c,), in squared grey levels over a picture of PICTURE_PX."""
-    # a finer view tells no more of what is blurred by so much
-    finest = SEEN_PT * photo.shape[1] / seen_at / SEEN_PX
-    photo = shrunk(photo, max(1.0, finest, float(np.sqrt(photo.size / VIEW_PX))))
-    height, width = photo.shape
-    columns = max(2, min(width // _LEAST_PX, round(seen_at / _SPACING_PT)))
-    rows = min(height, max(1, round(columns * height / width)))
-    blur = camera_blur(photo, edges)
-    errors = []
-    for arrangement in (edges, EdgeList(edges.width, edges.height)):
-        difference = _difference(arrangement, photo, columns, rows, blur, SEEN_PT * width / seen_at, threads)
-        errors.append(np.square(difference, dtype=np.float64))
-    saved = np.rint((errors[1] - errors[0]) * (255.0**2 * _PARTS)).astype(np.int64)
-    nearest = walls.nearest(edges, width, height, _REACH * width / columns)
-    chain_of = np.empty(len(edges.edges), np.int64)
-    for number, chain in enumerate(chains):
-        chain_of[chain] = number
-    there = nearest >= 0
-    totals: Ints = np.zeros(len(chains), np.int64)
-    np.add.at(totals, chain_of[nearest[there]], saved[there])
-    return totals.astype(np.float64) * (PICTURE_PX / photo.size / _PARTS)
+class _Savings:
+    """What chains save of the error that a drawing of a width shows, in squared grey levels over PICTURE_PX."""
 
+    def __init__(
+        self, edges: EdgeList, chains: list[list[int]], photo: Grey32, seen_at: float, threads: int | None
+    ) -> None:
+        """edges, photo, seen_at, threads: as of `thin_edges`."""
+        # a finer view tells no more of what is blurred by so much
+        finest = SEEN_PT * photo.shape[1] / seen_at / SEEN_PX
+        self.photo = shrunk(photo, max(1.0, finest, float(np.sqrt(photo.size / VIEW_PX))))
+        height, width = self.photo.shape
+        self.columns = max(2, min(width // _LEAST_PX, round(seen_at / _SPACING_PT)))
+        self.rows = min(height, max(1, round(self.columns * height / width)))
+        self.blur = camera_blur(self.photo, edges)
+        self.seen = SEEN_PT * width / seen_at
+        self.threads = threads
+        chain_of = np.empty(len(edges.edges), np.int64)
+        for number, chain in enumerate(chains):
+            chain_of[chain] = number
+        nearest = walls.nearest(edges, width, height, _REACH * width / self.columns)
+        self.there = nearest >= 0
+        self.chain = chain_of[nearest[self.there]]
+        self.count = len(chains)
+        self.without = self._error(EdgeList(edges.width, edges.height))
+        self.of_none = self._sums(self.without)  # the most that each chain (c,) could save
 
-def _difference(
-    edges: EdgeList, photo: Grey32, columns: int, rows: int, blur: float, seen: float, threads: int | None
-) -> Grey32:
-    """What the reconstruction of a grid, as the camera would see it, differs from the photo, blurred by `seen`."""
-    height, width = photo.shape
-    samples = reduce(
-        extract_samples(photo, edges), edges, columns, rows, photo=photo, fit="lsq", blur=blur, threads=threads
-    )
-    grey = reconstruct(samples.astype(float), edges, 2 * width, 2 * height, threads=threads)
-    grey = np.clip(grey, 0, 1, out=grey).reshape(height, 2, width, 2).mean(axis=(1, 3))
-    return smoothed(smoothed(grey, blur) - photo, seen)
+    def of(self, edges: EdgeList) -> npt.NDArray[np.float64]:
+        """What each chain (c,) saves where these edges are."""
+        return self._sums(self.without - self._error(edges))
+
+    def _sums(self, saved: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+        """Sums (c,) of what is saved (h, w), each place's by the nearest chain."""
+        parts = np.rint(saved[self.there] * (255.0**2 * _PARTS)).astype(np.int64)
+        totals: Ints = np.zeros(self.count, np.int64)
+        np.add.at(totals, self.chain, parts)
+        return totals.astype(np.float64) * (PICTURE_PX / self.photo.size / _PARTS)
+
+    def _error(self, edges: EdgeList) -> npt.NDArray[np.float64]:
+        """Squares (h, w) of what the reconstruction of a grid, as the camera would see it, differs from the photo."""
+        height, width = self.photo.shape
+        samples = extract_samples(self.photo, edges, contamination(self.blur))
+        reduction = Reduction(samples, edges, "lsq", self.threads)
+        reduced = reduction.to(self.columns, self.rows, self.photo, self.blur)
+        grey = reconstruct(reduced.astype(float), edges, 2 * width, 2 * height, threads=self.threads)
+        grey = np.clip(grey, 0, 1, out=grey).reshape(height, 2, width, 2).mean(axis=(1, 3))
+        return np.square(smoothed(smoothed(grey, self.blur) - self.photo, self.seen), dtype=np.float64)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from penink_cli.ground.model import EdgeList
+from penink_cli.reconstruction import thinning
 from penink_cli.reconstruction.thinning import stretches, thin_edges
 
 CHAINS = {"strong": [0, 1, 2, 3], "false": [4, 5], "faint": [6]}
@@ -44,6 +45,15 @@ def test_chains_are_kept_by_what_they_save(scene):
     assert which(scene, thin_edges(edges, grey, seen_at=96, worth=1e9)) == set()
     thinned = thin_edges(edges, grey, seen_at=96)
     assert len(thinned.vertices) == 4 and thinned.strength is not None and (thinned.strength == 0.6).all()
+
+
+def test_a_chain_saves_no_more_than_is_wrong_without_edges(scene):
+    """So what cannot be worth it is left out before the picture with edges is made."""
+    grey, edges = scene
+    savings = thinning._Savings(edges, list(CHAINS.values()), grey, 96.0, 1)
+    assert (savings.of(edges) <= savings.of_none).all() and (savings.of_none >= 0).all()
+    strong, false, faint = savings.of_none
+    assert strong > 1000 * faint and faint > 100 * false
 
 
 def test_what_is_to_be_kept_stays(scene):
