@@ -13,10 +13,12 @@ if _signal.getsignal(_signal.SIGINT) is _signal.default_int_handler:
     _signal.signal(_signal.SIGINT, _signal.SIG_DFL)
 
 from penink_cli.ground import streams
+from penink_cli.ground._compiled import heap
 
 
 def main() -> None:
     """Entry point of the ``penink`` command."""
+    heap.share()
     streams.install_signals()
     # numpy's linear algebra, of which little is used here, would start a thread a processor, each with its megabytes;
     # under `ulimit -v` it spins for ever where it gets none.

@@ -92,12 +92,13 @@ def settle_junctions(
 
     again: set[int] = set()  # vertices moved by a site that is not theirs
     for turn in range(_PASSES):
-        sites = _sites(planar, step, near, width, height)
-        if turn == 0 and seen_at is not None:
-            shown = _shown_vertices(planar, grey, 2.0 * blur, _SHOWN_PT * width / seen_at)
-            sites = [site for site in sites if shown[site[0]].any()]
+        wanted = None
         if turn:
-            sites = [site for site in sites if again.intersection(site[0].tolist())]
+            wanted = np.zeros(len(np.asarray(planar.vertices)), np.bool_)
+            wanted[list(again)] = True
+        elif seen_at is not None:
+            wanted = _shown_vertices(planar, grey, 2.0 * blur, _SHOWN_PT * width / seen_at)
+        sites = _sites(planar, step, near, width, height, wanted)
         again = set()
         for wave in _waves(_in_view(planar, sites, idle[0])):
             tasks = (partial(improve, wave[k : k + _TOGETHER]) for k in range(0, len(wave), _TOGETHER))
@@ -133,8 +134,13 @@ def _waves(sites: list[tuple[Site, list[int]]]) -> list[list[Site]]:
     return [waves[k] for k in sorted(waves)]
 
 
-def _sites(planar: Planar, step: Floats, near: float, width: int, height: int) -> list[Site]:
-    """Corners, junctions and open ends beside something, those together that are near to one another."""
+def _sites(
+    planar: Planar, step: Floats, near: float, width: int, height: int, wanted: npt.NDArray[np.bool_] | None
+) -> list[Site]:
+    """Corners, junctions and open ends beside something, those together that are near to one another.
+
+    wanted: (n,) vertices of which a site has at least one; None for all. The strongest are chosen of all sites.
+    """
     at, ends = np.asarray(planar.vertices) * UNIT, _ends(planar)
     inside = np.asarray(((at > 0) & (at < (width, height))).all(axis=1))
     special = _special(planar, at, ends, near)
@@ -149,21 +155,28 @@ def _sites(planar: Planar, step: Floats, near: float, width: int, height: int) -
     most = max(_FEW, width * height // _PIXELS_A_SITE)
     strength = np.maximum.reduceat(step[special], firsts)
     chosen = np.sort(np.argsort(-strength, kind="stable")[:most])
+    if wanted is not None:
+        chosen = chosen[np.logical_or.reduceat(wanted[special], firsts)[chosen]]
+    if not len(chosen):
+        return []
 
     owner = np.full(len(at), -1, np.int32)
-    owner[special] = group
+    of_chosen = np.zeros(len(firsts), np.bool_)
+    of_chosen[chosen] = True
+    owner[special] = np.where(np.repeat(of_chosen, np.diff(firsts, append=len(special))), group, -1)
     a, b = np.concatenate([ends, ends[:, ::-1]]).T
     short = exact.length(at[a] - at[b]) < _BESIDE * near
     next_to = np.flatnonzero(short & (owner[a] >= 0) & (owner[a] != owner[b]) & inside[b])
     beside: dict[int, set[int]] = defaultdict(set)
     for k, v in zip(owner[a[next_to]].tolist(), b[next_to].tolist()):
         beside[k].add(v)
-    cores = np.split(special, firsts[1:])
     degree = np.bincount(ends.ravel(), minlength=len(at))
+    opens = np.logical_or.reduceat(degree[special] == 1, firsts)
     sites = []
-    for core in (cores[k] for k in chosen):
-        wider = np.concatenate([core, np.array(sorted(beside[owner[core[0]]]), np.int32)])
-        sites.append((core, wider, int(near) if (degree[core] == 1).any() else _AROUND))
+    for k, first, last in zip(chosen.tolist(), firsts[chosen].tolist(), np.append(firsts, len(special))[chosen + 1]):
+        core = special[first:last]
+        wider = np.concatenate([core, np.array(sorted(beside[group[first]]), np.int32)])
+        sites.append((core, wider, int(near) if opens[k] else _AROUND))
     return sites
 
 

@@ -14,7 +14,7 @@ from contextlib import contextmanager
 import click
 
 from penink_cli.chain.kept import Kept
-from penink_cli.ground import heap, streams
+from penink_cli.ground import streams
 from penink_cli.ground import threads as threading
 from penink_cli.ground.changes import noting
 from penink_cli.ground.errors import PeninkError
@@ -153,6 +153,5 @@ def bench() -> Iterator[dict[str, bytes]]:
     """A workbench. While it is there, inputs that were read are remembered, and no warning is given twice."""
     from penink_cli.options.remembered import remembering_inputs
 
-    heap.share()
     with streams.workbench({}) as files, remembering_inputs(), warning_once():
         yield files

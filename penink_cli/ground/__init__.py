@@ -14,6 +14,5 @@ gaussian    a low-pass of pictures
 colour      sRGB's curve and CIE Lab; codes: `#rrggbb`
 masks       connected parts of a mask, and distances from it
 threads     work shared out among threads; turns: two things at the same time, told one after the other
-heap        memory that is kept for what needs it next
 recall      results remembered while `draw --watch` draws again
 """

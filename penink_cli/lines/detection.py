@@ -92,6 +92,8 @@ def detect_lines(
     rows, columns = grey.shape
     width, height = working_size(columns, rows)
     picture = resized(grey, maxval, width, height, threads)
+    # A bank takes more room than all else together: spots come before it, and the second bank after the first.
+    things = spots(picture, threads) if black else []
     shortest = SHORTEST if min_length is None else min_length * math.sqrt(width * height / (columns * rows))
     even = normalised(picture, threads)
     tone = 1 - blurred(picture, GROUND, threads)
@@ -100,8 +102,6 @@ def detect_lines(
     else:
         given = directions(height, width)
         cos2, sin2 = (np.ascontiguousarray(part, np.float32) for part in (given.cos2, given.sin2))
-    # A bank takes more room than all else together: spots come before it, and the second after the first.
-    things = spots(picture, threads) if black else []
     fine = oriented.responses(even, *FINE, threads)
     sides = _weighed(fine, threads)
     dark = _lines(_traced(fine, 1.0, HIGH, tone, cos2, sin2, sides), shortest) if black else []

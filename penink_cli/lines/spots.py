@@ -10,7 +10,6 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cache
-from itertools import pairwise
 
 import numpy as np
 
@@ -58,17 +57,23 @@ class Spot:
 def spots(picture: Picture, threads: int) -> list[Spot]:
     """Dark spots of a picture (h, w), those of the highest contrast first; none overlaps another."""
     wider = [float(exact.power(RATIO, k)) for k in range(SCALES + 1)]
-    blurs = [blurred(picture, FINEST * times, threads) for times in wider]
-    steps = [wide - narrow for narrow, wide in pairwise(blurs)]
+    finest = last = blurred(picture, FINEST, threads)
+    steps = []
+    for times in wider[1:]:
+        wide = blurred(picture, FINEST * times, threads)
+        steps.append(wide - last)
+        last = wide
+    del last, wide
     candidates: list[tuple[float, int, int, int]] = []
     for k, step in enumerate(steps):
         for i, j in _maxima(steps, k, np.float32(CONTRAST * DISC)):
             candidates.append((-float(step[i, j]), k, i, j))
+    del step, steps
     candidates.sort()
     taken = np.zeros(picture.shape, np.bool_)
     found = []
     for _, k, i, j in candidates[:MOST]:
-        if not taken[i, j] and (spot := _spot(picture, blurs[0], taken, i, j, FITS * FINEST * wider[k])):
+        if not taken[i, j] and (spot := _spot(picture, finest, taken, i, j, FITS * FINEST * wider[k])):
             found.append(spot)
     return found
 
