@@ -45,7 +45,7 @@ PLATES_TEXTURE = "crosshatch"  # its tone is true up to the darkest, which inks 
     "--out-dir",
     type=click.Path(file_okay=False),
     metavar="DIR",
-    help="Draw each photo into a file of its name in this folder, which is made if need be.",
+    help="Draw each photo into a file of the photo's name in this folder, which is made if need be.",
 )
 @click.option(
     "--as",
@@ -63,7 +63,7 @@ PLATES_TEXTURE = "crosshatch"  # its tone is true up to the darkest, which inks 
     default=STYLE_NAME,
     show_default=True,
     metavar="NAME|FILE",
-    help="A style of drawing (see penink style list), or its file; what other options say goes before it.",
+    help="A style of drawing (see penink style list), or its file; other options go before what it says.",
 )
 @click.option(
     "-t",
@@ -76,8 +76,15 @@ PLATES_TEXTURE = "crosshatch"  # its tone is true up to the darkest, which inks 
 @click.option("--width", type=LENGTH, help="Width on paper: 4in, 100mm.  [default: 6in, or what --paper holds]")
 @click.option("--height", type=LENGTH, help="Height on paper, instead of --width.")
 @click.option("--pen", type=LENGTH, help="Draw everything with one pen of this width.  [default: the style's]")
-@click.option("--gamma", type=Finite(0.05, 20), metavar="G", help="Tone curve: grey is raised to it.  [default: 1]")
-@click.option("--seed", type=click.IntRange(0, 2**62), default=0, show_default=True, metavar="N", help="Another hand.")
+@click.option("--gamma", type=Finite(0.05, 20), metavar="G", help="Tone curve: grey to the power of G.  [default: 1]")
+@click.option(
+    "--seed",
+    type=click.IntRange(0, 2**62),
+    default=0,
+    show_default=True,
+    metavar="N",
+    help="Each number is another hand.",
+)
 @click.option(
     "--device-dpi",
     type=DeviceDpi(),
@@ -92,7 +99,7 @@ PLATES_TEXTURE = "crosshatch"  # its tone is true up to the darkest, which inks 
     "directions_file",
     type=click.Path(allow_dash=True),
     metavar="FILE",
-    help="Hatch along this: a field of directions, or your own strokes over the photo, a strokes file or SVG.",
+    help="Hatch along this file: a field of directions, or your own strokes over the photo, as strokes or SVG.",
 )
 @inks_option
 @click.option("--black", type=Finite(0, 1), metavar="SHARE", help="With --inks, as separate has it.  [default: 0.8]")
@@ -108,7 +115,7 @@ PLATES_TEXTURE = "crosshatch"  # its tone is true up to the darkest, which inks 
     "pens_file",
     type=click.Path(),
     metavar="FILE",
-    help="The plotter's pens, as to-svg has it (.svg); if all are of one width, everything is drawn with that.",
+    help="The plotter's pens, as of to-svg (.svg); if all have one width, everything is drawn with that width.",
 )
 @threads_option
 @verbose_option
@@ -132,13 +139,14 @@ def draw(
     the illustration itself, which `penink render` draws at any size, and .html a page that draws it.
     --verbose prints the chain of filters that gives the same bytes.
 
-    With --out-dir any number of photos are drawn in one go; what cannot be read is named at the end, and the rest is
-    done. With --watch the drawing follows its photo, and the style, texture, mask or strokes given as files, until it
-    is interrupted; only what has changed is made anew, and a page reloads itself in the browser.
+    With --out-dir any number of photos are drawn in one go; photos that cannot be read are named at the end. With
+    --watch the photo is drawn again whenever it changes, or the style, texture, mask or strokes given as files, until
+    the command is interrupted; only what has changed is made anew, and a page reloads itself in the browser.
 
-    With --inks it is drawn in colours, a plate an ink. They are the photo's, unless --strength, --detail, --target,
-    --mask or --style says how they are composed. Lines are the darkest ink's, and the texture is crosshatch unless
-    another is named. Plates are drawn twice, so that together they have the right colours (see penink balance).
+    With --inks the drawing is in colours, one plate for each ink. The colours are the photo's, unless --strength,
+    --detail, --target, --mask or --style says how to compose them. Lines go to the darkest ink, and the texture is
+    crosshatch unless another is named. Plates are drawn twice, so that together they have the right colours (see penink
+    balance).
 
     \b
     penink draw photo.jpg -o photo.pdf

@@ -6,27 +6,9 @@ from typing import Any
 
 import click
 
-from penink_cli.ground.errors import in_quotes
 from penink_cli.ground.streams import writing
-from penink_cli.options.common import LENGTH, Finite, filter_options, is_given, printer_option
+from penink_cli.options.common import LENGTH, Finite, Point, filter_options, is_given, printer_option
 from penink_cli.options.inputs import read_edges
-
-
-class Point(click.ParamType):
-    """``X,Y`` in pixels of the photo."""
-
-    name = "X,Y"
-
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> tuple[float, float]:
-        """(x, y)."""
-        if isinstance(value, tuple):
-            return value
-        number = Finite()
-        parts = value.split(",")
-        if len(parts) != 2:
-            self.fail(f"{in_quotes(value)} is not a point such as 120,85.5", param, ctx)
-        x, y = (number.convert(part, param, ctx) for part in parts)
-        return x, y
 
 
 @click.command(name="outline")

@@ -6,10 +6,9 @@ from typing import Any
 
 import click
 
-from penink_cli.commands.outline import Point
 from penink_cli.ground.errors import in_quotes
 from penink_cli.ground.streams import writing
-from penink_cli.options.common import edges_option, filter_options, plain_number
+from penink_cli.options.common import Point, edges_option, filter_options, plain_number
 from penink_cli.options.inks import CMYK, Inks, inks_options, inverted, refuse_without_plate, separated
 from penink_cli.options.inputs import only_one_standard_input, read_edges, warn_of_another_shape
 from penink_cli.options.photographs import photo_options, read_photo

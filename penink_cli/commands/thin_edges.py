@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import click
 
-from penink_cli.commands.outline import Point
 from penink_cli.ground.streams import writing
 from penink_cli.options.common import (
     LENGTH,
     Finite,
+    Point,
     filter_options,
     is_given,
     reporter,

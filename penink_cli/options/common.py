@@ -108,6 +108,22 @@ class Finite(click.ParamType):
         return number
 
 
+class Point(click.ParamType):
+    """``X,Y`` in pixels of the photo."""
+
+    name = "X,Y"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> tuple[float, float]:
+        """(x, y)."""
+        if isinstance(value, tuple):
+            return value
+        parts = value.split(",")
+        if len(parts) != 2:
+            self.fail(f"{in_quotes(value)} is not a point such as 120,85.5", param, ctx)
+        x, y = (Finite().convert(part, param, ctx) for part in parts)
+        return x, y
+
+
 class DeviceDpi(click.ParamType):
     """Dots per inch of the printer, or ``none``."""
 

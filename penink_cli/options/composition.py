@@ -65,13 +65,13 @@ def composition_options(function: F) -> F:
             "--vignette",
             type=Length(zero=True),
             metavar="LENGTH",
-            help="Fade out over that length within the border of the mask, or of an oval where there is none.",
+            help="Fade out over this length within the border of the mask, or of an oval where there is no mask.",
         ),
         click.option(
             "--mask",
             type=click.Path(allow_dash=True),
             metavar="FILE",
-            help="A picture of the photo's size, white where it is drawn; elsewhere paper stays white.",
+            help="A picture of the photo's size, white where the photo is drawn; elsewhere the paper stays white.",
         ),
         click.option(
             "--target",
@@ -95,7 +95,7 @@ def composition_options(function: F) -> F:
             default=1.8,
             show_default=True,
             metavar="G",
-            help="How much detail is raised; 1 leaves it as it is.",
+            help="How many times detail is raised; 1 leaves it as it is.",
         ),
         click.option(
             "--strength",
@@ -103,7 +103,7 @@ def composition_options(function: F) -> F:
             default=0.6,
             show_default=True,
             metavar="0…1",
-            help="How far tones are moved from the photo's; 0 is its luma as stored.",
+            help="How far tones are moved from the photo's; 0 is the photo's luma as stored.",
         ),
     ):
         function = decorate(function)

@@ -90,7 +90,7 @@ def inks_options(function: F) -> F:
             default=BLACK_SHARE,
             show_default=True,
             metavar="SHARE",
-            help="Of inks one of which is black: the share of the grey in a colour that is left to it.",
+            help="Where one ink is black: the share of the grey in a colour that it prints.",
         ),
         click.option(
             "--paper-color",
@@ -100,7 +100,7 @@ def inks_options(function: F) -> F:
             default="white",
             show_default=True,
             metavar="COLOUR",
-            help="Of the paper that is printed on.",
+            help="Colour of the paper.",
         ),
         inks_option,
     ):

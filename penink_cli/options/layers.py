@@ -98,7 +98,7 @@ def page_options(function: F) -> F:
             type=Length(zero=True),
             default="0",
             metavar="LENGTH",
-            help="Leave at least that much free around the picture: 10mm, 0.5in.  [default: 0]",
+            help="Leave at least so much free around the picture: 10mm, 0.5in.  [default: 0]",
         ),
         click.option(
             "--paper",
@@ -136,8 +136,8 @@ def gain_option(function: F) -> F:
         "--device-dpi",
         type=Gain(),
         metavar="N|none",
-        help="Draw the strokes as wide as a printer of N dots an inch paints them.  [default, for what is looked at on "
-        "a screen: the printer that the strokes are made for, as their file says]",
+        help="Draw the strokes as wide as a printer of N dots an inch paints them.  [default: the printer that the "
+        "strokes are made for, as their file says; of to-pgm none]",
     )(function)
 
 
@@ -148,26 +148,26 @@ def travel_options(function: F) -> F:
             "--lift",
             type=Finite(0, 60),
             metavar="SECONDS",
-            help="That raising the pen takes, and lowering it: changes the time only.  [default: 0.12]",
+            help="Time that the pen takes to be raised, and to be lowered: changes the time only.  [default: 0.12]",
         ),
         click.option(
             "--accel",
             type=LENGTH,
             metavar="LENGTH",
-            help="A second, each second, with the pen down; twice as much when it is up. Changes the time only.  "
-            "[default: 200mm]",
+            help="Acceleration with the pen down, LENGTH a second each second; twice that with the pen up. Changes the "
+            "time only.  [default: 200mm]",
         ),
         click.option(
             "--travel-speed",
             type=LENGTH,
             metavar="LENGTH",
-            help="A second with the pen up: changes the time only.  [default: 200mm]",
+            help="Length a second with the pen up: changes the time only.  [default: 200mm]",
         ),
         click.option(
             "--speed",
             type=LENGTH,
             metavar="LENGTH",
-            help="A second with the pen down: changes the time only, which is said.  [default: 50mm]",
+            help="Length a second with the pen down: changes the time only, which is told.  [default: 50mm]",
         ),
         click.option(
             "--pen",
@@ -180,7 +180,7 @@ def travel_options(function: F) -> F:
             type=Length(zero=True),
             default="0.05",
             metavar="LENGTH",
-            help="With --order, draw strokes of one width in one go whose ends are that near: fewer lifts.  "
+            help="With --order: draw strokes of one width in one go if their ends are so near. Fewer lifts.  "
             "[default: 0.05pt]",
         ),
         click.option(
