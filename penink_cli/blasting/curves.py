@@ -95,37 +95,12 @@ def cut(points: Floats, first: Ints, pieces: Ints, curve: Ints, a: Floats, b: Fl
 
     Returns points and first of the parts. A part of a dot is the dot.
     """
-    k = segments_of(first)
-    seg_begin = starts(k)
-    # where each segment begins, counted in samples from the start of its curve
-    run = starts(pieces)
-    offset = run[:-1] - run[np.repeat(seg_begin[:-1], k)] if len(pieces) else np.zeros(0, np.int64)
-    base = run[np.minimum(seg_begin[curve], len(pieces))]
-    dots = k[curve] == 0
-    limit = run[seg_begin[curve + 1]] - base
-    a = np.clip(a, 0, limit)
-    b = np.clip(b, a, limit)
-    lo = np.searchsorted(run, base + a, side="right") - 1
-    hi = np.searchsorted(run, base + b, side="left") - 1
-    last = seg_begin[curve + 1] - 1
-    lo = np.clip(lo, seg_begin[curve], np.maximum(last, seg_begin[curve]))
-    hi = np.clip(hi, lo, np.maximum(last, lo))
-    n = np.where(dots, 0, hi - lo + 1)
-    part = np.repeat(np.arange(len(curve)), n)
-    seg = lo[part] + ramp(n)
-    sizes = 3 * n + 1
-    begin = starts(sizes)
+    segments, run = starts(segments_of(first)), starts(pieces)
+    points, curve = np.ascontiguousarray(points), np.ascontiguousarray(curve, np.int64)
+    a, b = np.array(a, np.float64), np.array(b, np.float64)  # which are clipped
+    within = np.empty((len(curve), 2), np.int64)
+    _curves.extents(segments, run, curve, a, b, within)
+    begin = starts(3 * (within[:, 1] - within[:, 0]) + 1)
     out = np.empty((begin[-1], 2))
-    if len(seg):
-        m = pieces[seg].astype(float)
-        t0 = np.clip((a[part] - offset[seg]) / m, 0.0, 1.0)
-        t1 = np.clip((b[part] - offset[seg]) / m, 0.0, 1.0)
-        # most are whole
-        at, source = begin[part] + 3 * ramp(n), begins_of(first)[seg]
-        for j in range(4):
-            out[at + j] = points[source + j]
-        some = np.flatnonzero((t0 > 0.0) | (t1 < 1.0))
-        four = np.arange(4)
-        out[at[some, None] + four] = blossom(points[source[some, None] + four], t0[some], t1[some])
-    out[begin[:-1][dots]] = points[first[curve[dots]]]
+    _curves.cut(points, first, segments, run, curve, a, b, within, begin, out)
     return out, begin

@@ -228,6 +228,7 @@ class Sheet:
             _placing.place(against, tried, asked, order, runs, moved)
 
         for group in coloured(batches, self._blocks(lines)):
+            group.sort(key=len, reverse=True)  # so that threads end together
             self.each(run, group)
         who, which = np.nonzero(runs[:, :, 0] >= 0)
         found = np.column_stack([who, runs[who, which]])
@@ -327,14 +328,10 @@ def coloured(batches: Sequence[Ints], block: Ints) -> list[list[Ints]]:
 def look_up(values: npt.NDArray[np.floating], points: Floats, width: float, height: float) -> Floats:
     """Values (rows, columns) that fill width × height at points (n, 2), bilinear."""
     rows, columns = values.shape
-    x = np.clip(points[:, 0] * (columns / width) - 0.5, 0, columns - 1)
-    y = np.clip(points[:, 1] * (rows / height) - 0.5, 0, rows - 1)
-    j, i = x.astype(np.int64), y.astype(np.int64)
-    u, v = x - j, y - i
-    right, below = np.minimum(j + 1, columns - 1), np.minimum(i + 1, rows - 1)
-    top = values[i, j] * (1 - u) + values[i, right] * u
-    bottom = values[below, j] * (1 - u) + values[below, right] * u
-    return np.asarray(top * (1 - v) + bottom * v)
+    out = np.empty(len(points))
+    points = np.ascontiguousarray(points, np.float64)
+    _resampling.look_up(np.ascontiguousarray(values), points, columns / width, rows / height, out)
+    return out
 
 
 def resample(tone: Floats, rows: int, columns: int, *, least: float = 0.0) -> Floats:

@@ -1,5 +1,5 @@
 # cython: boundscheck=False, wraparound=False, cdivision=True
-"""Compiled: values stretched along one axis, by means over cells or linear in between. See `sheet.resample`.
+"""Compiled: values stretched along one axis, by means over cells or linear in between, and looked up. See `sheet`.
 
 Running sums go from the first value to the last, so that the numbers are the same whatever the machine.
 """
@@ -83,3 +83,24 @@ def blends_across(
                 out[i, k] = (
                     values[i, at[k]] * (1.0 - part[k]) + values[i, min(at[k] + 1, values.shape[1] - 1)] * part[k]
                 )
+
+
+def look_up(
+    const real[:, ::1] values, const double[:, ::1] points, double across, double down, double[::1] out
+) -> None:
+    """Values (rows, columns) at points (n, 2), bilinear; so many columns and rows are one unit of these."""
+    cdef Py_ssize_t rows = values.shape[0], columns = values.shape[1], k, i, j, right, below
+    cdef double x, y, u, v, upper, lower
+    with nogil:
+        for k in range(out.shape[0]):
+            x = min(max(points[k, 0] * across - 0.5, 0.0), <double>(columns - 1))
+            y = min(max(points[k, 1] * down - 0.5, 0.0), <double>(rows - 1))
+            j = <Py_ssize_t>x
+            i = <Py_ssize_t>y
+            u = x - j
+            v = y - i
+            right = min(j + 1, columns - 1)
+            below = min(i + 1, rows - 1)
+            upper = values[i, j] * (1.0 - u) + values[i, right] * u
+            lower = values[below, j] * (1.0 - u) + values[below, right] * u
+            out[k] = upper * (1.0 - v) + lower * v
