@@ -7,6 +7,7 @@ enough that together they cover all. What is too thin for that is left to rows t
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -33,20 +34,33 @@ CLEAR, BEYOND = 1.2, 0.4
 LEAST_THIN_PT2 = 0.3
 
 
+@dataclass(frozen=True, eq=False)
+class Shape:
+    """What is to be filled: its border as rings (n, 2), points, and what of it is too thin for strokes there (h, w)."""
+
+    rings: list[Floats]
+    thin: marks.Mask
+
+
+def shape(tone: Picture, scale: Floats, pen_pt: float, gain_pt: float) -> Shape:
+    """The shape of where the tone exceeds `marks.LEVEL`; the arguments are those of `fill`."""
+    return Shape(_rings(tone, scale), _thin(tone > marks.LEVEL, (pen_pt + gain_pt) / 2, 1 / float(scale[0])))
+
+
 def fill(
     tone: Picture, scale: Floats, pen_pt: float, gain_pt: float, chains: list[Floats], widths: list[float], fixed: bool,
-    gaps: Gaps | None = None,
+    gaps: Gaps | None = None, known: Shape | None = None,
 ) -> None:  # fmt: skip
     """Strokes that fill where the tone (h, w) exceeds `marks.LEVEL`; scale (2,): a pixel's width and height, points.
 
     pen_pt: their width, which thin places narrow unless it is `fixed`; gain_pt: how much wider the device paints them.
-    gaps: lines within that are left white, with room for a stroke to either side.
+    gaps: lines within that are left white, with room for a stroke to either side. known: its shape, where that is.
     """
     half = (pen_pt + gain_pt) / 2
-    inside = tone > marks.LEVEL
-    if not inside.any():
+    if not (tone > marks.LEVEL).any():
         return
-    rings = _rings(tone, scale)
+    known = known or shape(tone, scale, pen_pt, gain_pt)
+    rings, thin = known.rings, known.thin
     edges = []
     for ring in rings:
         normal = _normals(ring)
@@ -70,7 +84,6 @@ def fill(
             rows = list(_turned(np.stack(rows), along))
         chains.extend(rows)
         widths.extend([pen_pt] * len(rows))
-    thin = _thin(inside, half, 1 / float(scale[0]))
     if thin.any():
         places: Floats = np.where(thin, tone, 0.0).astype(np.float64)
         marks.fill(places, np.zeros(2), scale, pen_pt, gain_pt, chains, widths, fixed)

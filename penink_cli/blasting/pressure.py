@@ -63,6 +63,7 @@ def swollen(sheet: Sheet, strokes: Strokes, tone: Floats, swell: float) -> Strok
     sheet.clear()
     there = _mean(sheet.ink)
     correction: Cells = np.ones((sheet.rows, sheet.columns), np.float32)
+    against = sheet.spread(np.maximum(sheet.seen(sheet.tone), np.float32(SINGLE)))
     for turn in range(ROUNDS + 1):
         widths = own * look_up(correction, knots, sheet.width, sheet.height)
         drawn = split.swelling(np.maximum(np.round(widths, 2), 0.05))
@@ -73,7 +74,7 @@ def swollen(sheet: Sheet, strokes: Strokes, tone: Floats, swell: float) -> Strok
         if turn == ROUNDS - 1:
             correction *= np.float32(1 + _evenly(sheet, there, _mean(widths)))
             continue
-        seen = sheet.spread(sheet.error()) / sheet.spread(np.maximum(sheet.seen(sheet.tone), np.float32(SINGLE)))
+        seen = sheet.spread(sheet.error()) / against
         correction = correction * (1 + np.clip(AGAINST * seen, np.float32(-CORRECTION), np.float32(CORRECTION)))
     drawn = _simpler(strokes, drawn)
     sheet.clear()

@@ -55,21 +55,28 @@ PEN_PT = 0.35
 
 def filled(
     value: Picture | None, width_pt: float, height_pt: float, pen_pt: float | None, gain_pt: float,
-    gaps: Gaps | None = None,
+    gaps: Gaps | None = None, known: bordered.Shape | None = None,
 ) -> Strokes:  # fmt: skip
     """Strokes that fill what `found` has found, save gaps in it, on a sheet of that size.
 
     pen_pt: the one pen there is, None for one that suits. gain_pt: how much wider the device paints it.
+    known: its shape, where that is known.
     """
     chains: list[Floats] = []
     widths: list[float] = []
     if value is not None:
-        h, w = value.shape
-        bordered.fill(
-            value, np.array([width_pt / w, height_pt / h]), PEN_PT if pen_pt is None else pen_pt, gain_pt, chains,
-            widths, pen_pt is not None, gaps,
-        )  # fmt: skip
+        scale, pen = _scale(value, width_pt, height_pt), PEN_PT if pen_pt is None else pen_pt
+        bordered.fill(value, scale, pen, gain_pt, chains, widths, pen_pt is not None, gaps, known)
     return Strokes.of(width_pt, height_pt, chains, widths)
+
+
+def shape(value: Picture, width_pt: float, height_pt: float, pen_pt: float | None, gain_pt: float) -> bordered.Shape:
+    """The shape of what `found` has found; the arguments are those of `filled`."""
+    return bordered.shape(value, _scale(value, width_pt, height_pt), PEN_PT if pen_pt is None else pen_pt, gain_pt)
+
+
+def _scale(value: Picture, width_pt: float, height_pt: float) -> Floats:
+    return np.array([width_pt / value.shape[1], height_pt / value.shape[0]])
 
 
 def found(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import TypeAlias
 
 import numpy as np
@@ -12,6 +13,7 @@ import numpy.typing as npt
 from penink_cli.blasting import curves, hatching, marks, solids
 from penink_cli.blasting.light import LightThings
 from penink_cli.blasting.sheet import Cells, Sheet, cells, coverage, resample
+from penink_cli.ground import threads as threading
 from penink_cli.ground.angles import direction
 from penink_cli.ground.device import MEAN
 from penink_cli.ground.model import Directions, EdgeList, Floats, Strokes, Texture
@@ -115,16 +117,19 @@ class Begun:
         black, broad = (solids.BLACK, solids.LINED) if whole else (task.solid or solids.DARKEST, 1.0)
         told = task.tone, *size, sheet.ink, black, light, dark is not None and dark.high >= ALMOST, broad
         value = recalled("black", told, lambda: solids.found(*told, threads=sheet.threads))
-        gaps = None
+        gaps = shape = None
         if value is not None and whole:
             assert dark is not None
             from penink_cli.blasting import reserved  # with what follows a field, which other textures do not load
 
+            field = self.field  # waited for with both threads free
             painted = (task.pen_pt or solids.PEN_PT) + gain
-            more = value, self.field, dark, task.edges, painted, task.seed
-            gaps = recalled("gaps", (task.tone, *more), lambda: reserved.white_lines(sheet, *more, task.tick))
+            more = value, field, dark, task.edges, painted, task.seed
+            with threading.meanwhile(partial(solids.shape, value, *size, task.pen_pt, gain), task.threads) as shaped:
+                gaps = recalled("gaps", (task.tone, *more), lambda: reserved.white_lines(sheet, *more, task.tick))
+                shape = shaped()
         rest = value, *size, task.pen_pt, gain, gaps
-        strokes = recalled("solids", rest, lambda: solids.filled(*rest))
+        strokes = recalled("solids", rest, lambda: solids.filled(*rest, shape))
         if gaps is not None and value is not None:
             part = resample((value > marks.LEVEL).astype(np.float64), sheet.rows, sheet.columns).astype(np.float32)
             covered = coverage(strokes, sheet.rows, sheet.columns, gain, sheet.threads)

@@ -1,6 +1,8 @@
 # cython: boundscheck=False, wraparound=False, cdivision=True
 """Compiled loops: points on chains of cubic Béziers, and parts of them. Only `curves` imports this module."""
 
+from penink_cli.ground._compiled.cubics cimport part
+
 
 def sample(
     double[:, ::1] points, long long[::1] first, long long[::1] pieces, long long[::1] begin, double[:, ::1] out
@@ -78,18 +80,6 @@ def extents(
             within[i, 1] = low + 1
 
 
-cdef void blossom(const double* p, double r, double s, double t, double* out) noexcept nogil:
-    """The polar form of a cubic (4 points) at r, s, t."""
-    cdef double[6] c
-    cdef Py_ssize_t k
-    for k in range(6):
-        c[k] = p[k] + r * (p[k + 2] - p[k])
-    for k in range(4):
-        c[k] = c[k] + s * (c[k + 2] - c[k])
-    for k in range(2):
-        out[k] = c[k] + t * (c[k + 2] - c[k])
-
-
 def cut(
     const double[:, ::1] points, const long long[::1] first, const long long[::1] segments, const long long[::1] run,
     const long long[::1] curve, const double[::1] a, const double[::1] b, const long long[:, ::1] within,
@@ -111,9 +101,6 @@ def cut(
                 t0 = between((a[i] - (run[k] - base)) / (run[k + 1] - run[k]), 0.0, 1.0)
                 t1 = between((b[i] - (run[k] - base)) / (run[k + 1] - run[k]), 0.0, 1.0)
                 if t0 > 0.0 or t1 < 1.0:
-                    blossom(&points[at, 0], t0, t0, t0, &out[to, 0])
-                    blossom(&points[at, 0], t0, t0, t1, &out[to + 1, 0])
-                    blossom(&points[at, 0], t0, t1, t1, &out[to + 2, 0])
-                    blossom(&points[at, 0], t1, t1, t1, &out[to + 3, 0])
+                    part(&points[at, 0], t0, t1, &out[to, 0])
                 to += 3
                 at += 3

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -130,6 +129,8 @@ class Strokes:
         """Strokes that cover the same, each of one width: swelling strokes in pieces, whose widths are `step` apart."""
         if self.knot_widths is None:
             return self
+        from penink_cli.ground._compiled import pieces as _pieces  # most filters do without
+
         swells = self.swells
         even, some = self.taken(~swells), self.taken(swells)
         counts = np.diff(some.first) // 3
@@ -138,20 +139,10 @@ class Strokes:
         knot = np.repeat(some.knots[:-1], counts) + within
         begin, end = some.at_knots[knot], some.at_knots[knot + 1]
         n = np.maximum(np.ceil(np.abs(end - begin) / step), 1).astype(np.int64)
-        which = np.repeat(np.arange(len(n)), n)
-        k = np.arange(len(which)) - np.repeat(np.cumsum(n) - n, n)
-        u, v = (k / n[which])[:, None], ((k + 1) / n[which])[:, None]
-        control = [some.points[segment[which] + i] for i in range(4)]
-
-        def nearer(places: list[Floats], t: Floats) -> list[Floats]:  # de Casteljau's step; together the polar form
-            return [a + (b - a) * t for a, b in pairwise(places)]
-
-        from_u, from_v = nearer(control, u), nearer(control, v)
-        uu, uv, vv = nearer(from_u, u), nearer(from_u, v), nearer(from_v, v)
-        four = [*nearer(uu, u), *nearer(uu, v), *nearer(uv, v), *nearer(vv, v)]
-        points = np.stack(four, axis=1).reshape(-1, 2)
-        widths = begin[which] + (end - begin)[which] * (k + 0.5) / n[which]
-        pieces = replace(some, points=points, first=4 * np.arange(len(which) + 1), widths=widths, knot_widths=None)
+        total = int(n.sum())
+        points, widths = np.empty((4 * total, 2)), np.empty(total)
+        _pieces.split(some.points, segment, begin, end, n, points, widths)
+        pieces = replace(some, points=points, first=4 * np.arange(total + 1), widths=widths, knot_widths=None)
         return Strokes.joined([replace(even, knot_widths=None), pieces])
 
     def taken(self, which: npt.NDArray[Any], turned: npt.NDArray[np.bool_] | None = None) -> Strokes:
