@@ -38,6 +38,7 @@ def black_from(tone: Picture, ink: Cells, px: float, threads: int) -> Picture:
     room = np.maximum(1 - ground, np.float32(0.1))
     part = (step - np.float32(OFTEN) * (usual * usual)) / room
     part[ground > np.float32(GROUND)] = 0
+    del ground, step, usual  # of a large drawing a plane is eight megabytes
     found = np.full(tone.shape, 2.0, np.float32)
     for ends, core in PARTS:
         thing, count = parts(part > np.float32(ends))
