@@ -7,6 +7,7 @@ itself (locale, hash seed, -OO, closed descriptors) is tested with whole process
 from __future__ import annotations
 
 import contextlib
+import fcntl
 import json
 import os
 import signal
@@ -62,8 +63,9 @@ class ForkServer:
 
         stdin: bytes, a descriptor, or nothing at all. stdout: a descriptor, or caught. limits: by
         name (``FSIZE``). ignore: signals ignored from the start. kill: a signal, and after how many seconds.
+        What it says is caught in a pipe, which no limit on the size of files cuts short.
         """
-        with tempfile.TemporaryFile() as given, tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err:
+        with tempfile.TemporaryFile() as given, tempfile.TemporaryFile() as out, _Pipe() as err:
             if isinstance(stdin, bytes):
                 given.write(stdin)
                 given.seek(0)
@@ -75,7 +77,7 @@ class ForkServer:
                 "umask": umask,
                 "ignore": list(ignore),
             }
-            standard = [stdin if isinstance(stdin, int) else given.fileno(), stdout or out.fileno(), err.fileno()]
+            standard = [stdin if isinstance(stdin, int) else given.fileno(), stdout or out.fileno(), err.writing]
             socket.send_fds(self._socket, [json.dumps(request).encode()], standard)
             process = json.loads(self._socket.recv(1 << 16))
             if kill is not None:
@@ -93,8 +95,29 @@ class ForkServer:
                 reply = self._socket.recv(1 << 16)
             status, peak = json.loads(reply)
             out.seek(0)
-            err.seek(0)
             return Result(status, out.read(), err.read(), peak)
+
+
+class _Pipe:
+    """A pipe that holds 1 MiB, read when the process at its other end is gone, whatever that has left running."""
+
+    def __enter__(self) -> _Pipe:
+        self._reading, self.writing = os.pipe()
+        fcntl.fcntl(self.writing, fcntl.F_SETPIPE_SZ, 1 << 20)
+        os.set_blocking(self._reading, False)
+        return self
+
+    def read(self) -> bytes:
+        """All that is in it."""
+        found = []
+        with contextlib.suppress(BlockingIOError):
+            while part := os.read(self._reading, 1 << 20):
+                found.append(part)
+        return b"".join(found)
+
+    def __exit__(self, *_: object) -> None:
+        os.close(self._reading)
+        os.close(self.writing)
 
 
 def _path_or_text(argument: object) -> str:

@@ -16,6 +16,7 @@ from penink_cli.blasting.sheet import coverage
 from penink_cli.blasting.tile import thresholds
 from penink_cli.formats import svg_texture, texture
 from penink_cli.ground.errors import FormatError, ParameterError
+from penink_cli.main import command_of
 from penink_cli.options.textures import find_texture, shipped
 from penink_cli.textures import kinds
 from penink_cli.textures.make import make, maker
@@ -70,6 +71,13 @@ def test_every_prefix_is_evenly_spread(name, part):
 @pytest.mark.parametrize("name", ["stipple", "brick", "shingle", *SETS])
 def test_a_shipped_texture_is_what_make_makes(name):
     assert written(make(name)) == written(find_texture(name))
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_what_a_kind_takes_can_be_given(kind):
+    options = {option.name for option in command_of("texture").commands["make"].params}
+    keywords = {name for name, p in inspect.signature(maker(kind)).parameters.items() if p.kind is p.KEYWORD_ONLY}
+    assert "pen" in keywords <= options
 
 
 @pytest.mark.parametrize("kind", KINDS)
