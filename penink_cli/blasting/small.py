@@ -9,8 +9,8 @@ from __future__ import annotations
 import numpy as np
 
 from penink_cli.blasting.sheet import Cells
-from penink_cli.composition.filters import Picture, blurred, closed
-from penink_cli.ground.masks import near, parts, sizes
+from penink_cli.composition.filters import Picture, blurred, by_rows, opened
+from penink_cli.ground.masks import Mask, near, parts, sizes
 
 #: Half the breadth of the broadest thing, and the σ that its ground is smoothed by, points.
 HALF_PT, GROUND_PT = 4.5, 0.5
@@ -31,21 +31,40 @@ def black_from(tone: Picture, ink: Cells, px: float, threads: int) -> Picture:
 
     tone: (h, w) ink coverage, 0 … 1, px pixels in a point. ink: (h, w) what lies there already.
     """
-    ground = blurred(-closed(-tone, round(HALF_PT * px)), GROUND_PT * px, threads)
-    step = np.maximum(tone - ground, 0)
-    usual = blurred(np.sqrt(np.sqrt(step)), AROUND_PT * px, threads)
-    usual *= usual
-    room = np.maximum(1 - ground, np.float32(0.1))
-    part = (step - np.float32(OFTEN) * (usual * usual)) / room
-    part[ground > np.float32(GROUND)] = 0
-    del ground, step, usual  # of a large drawing a plane is eight megabytes
+    ground = blurred(opened(tone, round(HALF_PT * px), threads), GROUND_PT * px, threads)
+
+    def root(tone: Picture, ground: Picture) -> Picture:
+        return np.sqrt(np.sqrt(np.maximum(tone - ground, 0)))
+
+    def way(tone: Picture, ground: Picture, usual: Picture) -> Picture:
+        usual = usual * usual
+        part = (np.maximum(tone - ground, 0) - np.float32(OFTEN) * (usual * usual)) / _room(ground)
+        part[ground > np.float32(GROUND)] = 0
+        return part
+
+    usual = blurred(by_rows(root, tone, ground, threads=threads), AROUND_PT * px, threads)
+    part = by_rows(way, tone, ground, usual, threads=threads)
+    del usual
     found = np.full(tone.shape, 2.0, np.float32)
     for ends, core in PARTS:
-        thing, count = parts(part > np.float32(ends))
+        some = part > np.float32(ends)
+        thing, count = parts(some)
         deep = (part > np.float32(core)) & (tone > np.float32(DARK))
-        size, dark, inked = (sizes(thing, count, some) for some in (thing > 0, deep, ink > INKED))
+        size, dark, inked = (sizes(thing, count, each) for each in (some, deep, ink > INKED))
         chosen = (dark >= CORE * size) & (inked < DRAWN * size)
         chosen[0] = False
         beside = near(~chosen[thing], 1.5, threads=threads)
-        np.minimum(found, tone - (part - np.float32(ends)) * room, out=found, where=beside)
+
+        def less(
+            found: Picture, tone: Picture, part: Picture, ground: Picture, beside: Mask, ends: float = ends
+        ) -> Picture:
+            begins = tone - (part - np.float32(ends)) * _room(ground)
+            return np.minimum(found, begins, out=found, where=beside)
+
+        found = by_rows(less, found, tone, part, ground, beside, threads=threads)
     return found
+
+
+def _room(ground: Picture) -> Picture:
+    """How far it is from the ground to black, a little at the least."""
+    return np.maximum(1 - ground, np.float32(0.1))

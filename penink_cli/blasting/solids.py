@@ -173,6 +173,7 @@ def _values(
     value = by_rows(blackness, tones, smooth, begins, falls, threads=threads)
     if close is not None:
         np.copyto(value, tones, where=close & falls)  # smoothed, it would be smaller
+    del tones, falls  # there are many of this size at this moment
     if black[1] < black[0]:
         by_itself = small.black_from(smooth, ink, px, threads)
         np.maximum(value, smooth - by_itself + marks.LEVEL, out=value)

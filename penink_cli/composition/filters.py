@@ -80,26 +80,45 @@ def gaussian(sigma: float) -> Picture:
     return np.array([v / total for v in w], np.float32)
 
 
-def lowest(picture: Picture, reach: int) -> Picture:
+def lowest(picture: Picture, reach: int, threads: int = 1) -> Picture:
     """The least value of picture (h, w) within so many pixels of each one, which is an octagon."""
-    slant = min(reach - math.floor(reach * 0.414 + 0.5), reach - 1)
-    out = np.pad(picture, reach, mode="edge")
-    for count, down, across in (
-        (2 * (reach - slant), 1, 0), (2 * (reach - slant), 0, 1), (slant, 1, 1), (slant, 1, -1)
-    ):  # fmt: skip
-        have = 0  # steps that each value has looked ahead
-        while have < count:
-            by = min(have + 1, count - have)
-            a, b = by * down, by * across
-            h, w = out.shape
-            out = np.minimum(out[: h - a, max(0, -b) : w - max(0, b)], out[a:, max(0, b) : w - max(0, -b)])
-            have += by
-    return np.ascontiguousarray(out)
+    return _extreme(picture, reach, np.minimum, threads)
 
 
-def closed(picture: Picture, reach: int) -> Picture:
+def closed(picture: Picture, reach: int, threads: int = 1) -> Picture:
     """The picture (h, w) without what is darker than all around it and nowhere broader than 2 · reach pixels."""
-    return lowest(-lowest(-picture, reach), reach)
+    return _extreme(_extreme(picture, reach, np.maximum, threads), reach, np.minimum, threads)
+
+
+def opened(picture: Picture, reach: int, threads: int = 1) -> Picture:
+    """The picture (h, w) without what is lighter than all around it and nowhere broader than 2 · reach pixels."""
+    return _extreme(_extreme(picture, reach, np.minimum, threads), reach, np.maximum, threads)
+
+
+def _extreme(picture: Picture, reach: int, pick: np.ufunc, threads: int) -> Picture:
+    """The least or the greatest value of picture (h, w) within so many pixels of each one, which is an octagon."""
+    slant = min(reach - math.floor(reach * 0.414 + 0.5), reach - 1)
+    rows, columns = picture.shape
+    result = np.empty((rows, columns), np.float32)
+
+    def band(top: int, bottom: int) -> None:
+        # Of some rows at a time all that comes in between stays in the processor's cache.
+        near = np.clip(np.arange(top - reach, bottom + reach), 0, rows - 1)
+        out = np.pad(picture[near], ((0, 0), (reach, reach)), mode="edge")
+        for count, down, across in (
+            (2 * (reach - slant), 1, 0), (2 * (reach - slant), 0, 1), (slant, 1, 1), (slant, 1, -1)
+        ):  # fmt: skip
+            have = 0  # steps that each value has looked ahead
+            while have < count:
+                by = min(have + 1, count - have)
+                a, b = by * down, by * across
+                h, w = out.shape
+                out = pick(out[: h - a, max(0, -b) : w - max(0, b)], out[a:, max(0, b) : w - max(0, -b)])
+                have += by
+        result[top:bottom] = out
+
+    threading.share(threading.ranges(band, rows, max(_BAND, 2 * reach)), threads)
+    return result
 
 
 def looked_up(values: Picture, table: npt.NDArray[np.float64], low: float = 0.0, high: float = 1.0) -> Picture:
