@@ -10,6 +10,10 @@ megapixel tells as much of a grid of a hundred samples a side. The grid that is 
 judged again. Without a width every pixel's noise counts, and the photo judges. Where only what a drawing shows counts,
 a second view does, which is blurred by SURE_PX of its pixels: of half a megapixel drawn 3 in wide it tells an error
 lower by .6 to .9 % than the photo does, at 12 megapixels in a twentieth of the time.
+
+Every try is a fit of its own. From grid to grid all samples move, so no tile stays as it was, and what hides samples
+from pixels is the larger part of a fit, so to begin at the samples of the last one saves little. The error falls by
+powers of .2 to 3 from one side of the ladder to the next, so one try bounds no other closely: it makes a guess.
 """
 
 from __future__ import annotations
