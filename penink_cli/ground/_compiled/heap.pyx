@@ -10,11 +10,11 @@ cdef extern from *:
     #include <stdlib.h>
     #ifdef __GLIBC__
     #include <malloc.h>
-    #define PLANE (1 << 25) /* bytes: what is larger is handed back, and so is more than that which is in no use */
+    #define PLANE (1 << 25) /* bytes: what is larger is handed back, and so is more than two that are in no use */
     static void share_heap(void) {
         mallopt(M_ARENA_MAX, 1);
         mallopt(M_MMAP_THRESHOLD, PLANE);
-        mallopt(M_TRIM_THRESHOLD, PLANE);
+        mallopt(M_TRIM_THRESHOLD, 2 * PLANE);
     }
     #else
     static void share_heap(void) {}
