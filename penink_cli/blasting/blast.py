@@ -69,7 +69,7 @@ def blast(
 
         tone = restored(tone, true, width_pt, height_pt, threads or 1)
     workers = threads or 1
-    # That is loops for a fifth of the time; what else has to be done before hatching hardly uses a second thread.
+    # Reading the field takes a fifth of a blast, and the other steps before hatching hardly use a second thread.
     with threading.meanwhile(
         lambda: read_field(directions, edges, width_pt, height_pt, workers), workers if chosen.follows(texture) else 1
     ) as field:
@@ -83,8 +83,9 @@ def blast(
                 lambda: telling.told(bare, width_pt, height_pt, shown, outlines, workers),
             )  # fmt: skip
         task = Task(
-            tone, width_pt, height_pt, edges, texture, seed, pen_pt, device_dpi, outlines, field, told, swell,
-            natural_pt, solid, workers, tick,
+            tone=tone, width_pt=width_pt, height_pt=height_pt, edges=edges, texture=texture, seed=seed, pen_pt=pen_pt,
+            device_dpi=device_dpi, outlines=outlines, field=field, told=told, swell=swell, natural_pt=natural_pt,
+            solid=solid, threads=workers, tick=tick,
         )  # fmt: skip
         strokes: Strokes = chosen.draw(task)
     tick()

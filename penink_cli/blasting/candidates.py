@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from penink_cli.blasting import curves, sweep, walls
 from penink_cli.blasting.curve_fitting import over_chords
-from penink_cli.blasting.sheet import SIGMA_PT, Cells, Sheet, Terms
+from penink_cli.blasting.sheet import SPREAD_PT, Cells, Sheet, Terms
 from penink_cli.ground.model import Floats, HatchLayer, Ints, Strokes
 
 #: The distance, about, at which curves are sampled, points.
@@ -168,7 +168,7 @@ def lattice(
         active = inside & (sheet.tone[at[:, 1], at[:, 0]] > layer.low) & (error[at[:, 1], at[:, 0]] > 0)
         due = np.maximum(due, np.where(active, sheet.residual[at[:, 1], at[:, 0]], 0.0))
     painted = sweep.painted_width(layer.angle, pen, gain_pt)
-    keep = due > least * painted / (2.5066 * SIGMA_PT)
+    keep = due > least * painted / SPREAD_PT
     middle, half, due = middle[keep], half[keep], due[keep]
     turn, bow = rng.normal(0, 0.012, len(half)), rng.normal(0, 0.12, len(half))
     uu = half[:, None] * np.array([-1.0, -1 / 3, 1 / 3, 1.0])

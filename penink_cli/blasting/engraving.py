@@ -91,9 +91,9 @@ def engrave(
         tick()
         strokes = Strokes.joined(
             [
-                drawn
+                strokes
                 for some, part, at in zip(sets, _parts(wanted, engraving.crosses), begin)
-                for drawn in _drawn(sheet, engraving, spacing, some, part, at)
+                for strokes in _drawn(sheet, engraving, spacing, some, part, at)
             ]
         )
         sheet.clear()

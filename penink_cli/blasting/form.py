@@ -15,7 +15,7 @@ from penink_cli.blasting import candidates, pen_lines, sweep, walls
 from penink_cli.blasting.level_lines import LevelLines, level_lines
 from penink_cli.blasting.phase import Field, Nodes, Plane, solve
 from penink_cli.blasting.shares import box_mean
-from penink_cli.blasting.sheet import SIGMA_PT, Cells, Sheet, resample
+from penink_cli.blasting.sheet import SPREAD_PT, Cells, Sheet, resample
 from penink_cli.ground.angles import direction
 from penink_cli.ground.device import MEAN
 from penink_cli.ground.model import Floats, HatchLayer, Ints
@@ -169,7 +169,7 @@ class Form:
         sheet, laid = self.sheet, self._laid.get(i)
         if laid is None:
             return self._candidates(NO_STROKES, np.zeros(0), pen, np.zeros(0))
-        owed = sheet.residual > least * self._painted(pen) / (2.5066 * SIGMA_PT)
+        owed = sheet.residual > least * self._painted(pen) / SPREAD_PT
         wanted = np.pad(laid.active & (error > 0) & owed, PAD)
         field = Field(self.nodes, *self.normals(i), laid.density)
         lines = self._lines(field, laid.phase, 0.5, _grown(wanted, round(length / 2 / self.nodes.dx)), seed)
@@ -177,7 +177,7 @@ class Form:
             lines, _ = pen_lines.live(lines, self._at(np.pad(laid.near, PAD).astype(np.float32), lines.points) > 0.5)
         due = self._due(i, lines.points, error)
         lines, _ = pen_lines.live(
-            lines, self._near(lines, due > least * self._painted(pen) / (2.5066 * SIGMA_PT), length)
+            lines, self._near(lines, due > least * self._painted(pen) / SPREAD_PT, length)
         )
         strokes = self._strokes(lines, laid.density, (0.7 * length, 1.3 * length), pen, seed)
         due = self._due(i, strokes.samples, error).reshape(-1, SAMPLES).max(axis=1)

@@ -38,7 +38,9 @@ CELL_PT = 0.96
 #: σ of the low-pass of what is due. Narrower than what the eye (and the measure) blurs,
 #: so that tone is right in small things too.
 SIGMA_PT = 2.5
-#: The same for the paper's rule, which does not say what is near a stroke. The narrower, the lighter: at 2.5 a ramp is
+#: A long thin stroke that is painted w points wide darkens its middle by w / SPREAD_PT under that Gaussian: √(2π) σ.
+SPREAD_PT = 2.5066 * SIGMA_PT
+#: σ for the paper's rule, which does not say what is near a stroke. The narrower, the lighter: at 2.5 a ramp is
 #: 4.8 % too light, at 1.95 it is 7.3 and photographs 8 to 11, at 1.6 they are 9.7 and 11 to 14.
 STRICT_SIGMA_PT = 1.95
 #: σ of what the eye sees at arm's length, 1/16 inch: errors are measured, and fed back, through this.

@@ -27,12 +27,17 @@ from penink_cli.ground.model import Floats, Strokes
 BLACK, DARKEST = 0.94, 0.97
 #: The tone from which on the dark is black with white lines in it, where it is a thing of its own.
 LINED = 0.78
-#: A thing is so wide somewhere, of BROAD_PT2 square points or more, and along OUTLINED of its border the tone falls by
-#: FALL within OUTLINE_PT: where it ended in a smooth tone its border would be that of nothing in the picture. What of
-#: it is less dark, down to the tone THING, is drawn the same way if MOSTLY is its dark part, and so is hatching of less
-#: than HOLE_PT2 amid it. Its border is that of the tone under a Gaussian of σ CALM_PT.
-ROOM_PT, BROAD_PT2, OUTLINED, FALL, OUTLINE_PT = 14.0, 2000.0, 0.85, 0.2, 4.0
-THING, MOSTLY, HOLE_PT2, CALM_PT = 0.65, 0.6, 1500.0, 1.5
+#: A dark thing is as wide somewhere as ROOM_PT, of an area of BROAD_PT2 or more, square points.
+ROOM_PT, BROAD_PT2 = 14.0, 2000.0
+#: Along such a part of its border the tone falls by FALL within OUTLINE_PT. A border within a smooth tone would be one
+#: of nothing in the picture.
+OUTLINED, FALL, OUTLINE_PT = 0.85, 0.2, 4.0
+#: What of it is lighter, down to the tone THING, has white lines too if such a part of the thing is dark.
+THING, MOSTLY = 0.65, 0.6
+#: Hatching amid a dark thing that is smaller than this becomes black with white lines too, square points.
+HOLE_PT2 = 1500.0
+#: The border of a dark thing is that of the tone under a Gaussian of this σ.
+CALM_PT = 1.5
 #: How far black is filled around small light things.
 BESIDE_PT = 3.0
 #: Whether it is black is told by the tone under a Gaussian of σ SMOOTH_PT. Where the tone falls below LIGHT within
@@ -43,11 +48,13 @@ SMOOTH_PT, LIGHT, FALLS_PT = 0.5, 0.6, 1.4
 WIDE_PT, NOISE = 3.0, 0.04
 #: The least area that is filled, square points; hatching draws the rest.
 LEAST_PT2 = 3.0
-#: Where the tone around is at least AROUND, black smaller than BLOT_PT2 would be a blot in the hatching: it is hatched.
-#: Hatching smaller than FLECK_PT2 would be a fleck in the black, and anything rather dark than light smaller than
-#: BEAD_PT2 a bead: both are filled. Nor is a dark thing filled here and there. A part that hangs together, at most
-#: NEARLY less dark than black, is hatched whole unless SHARE of it is black.
-AROUND, BLOT_PT2, FLECK_PT2, BEAD_PT2 = 0.8, 40.0, 25.0, 5.0
+#: Black that is smaller than this where the tone around is at least AROUND would be a blot: it is hatched.
+BLOT_PT2, AROUND = 40.0, 0.8
+#: Hatching that is smaller than this would be a fleck in the black: it is filled.
+FLECK_PT2 = 25.0
+#: What is rather dark than light and smaller than this would be a bead on the black's border: it is filled.
+BEAD_PT2 = 5.0
+#: A dark part that hangs together, at most NEARLY less dark than black, is hatched whole unless SHARE of it is black.
 NEARLY, SHARE = 0.04, 0.25
 #: The pen that fills. It is fine because rows may lie as far as its width from a border that runs along them.
 PEN_PT = 0.35

@@ -9,6 +9,7 @@ import click
 
 from penink_cli.ground.rules import RULES
 from penink_cli.ground.streams import writing
+from penink_cli.options.colours import COLOUR
 from penink_cli.options.common import (
     LENGTH,
     POSITIVE,
@@ -31,7 +32,7 @@ from penink_cli.options.inputs import (
     read_lines,
     read_to_blast,
 )
-from penink_cli.options.layers import COLOUR, read_layers
+from penink_cli.options.layers import read_layers
 from penink_cli.options.progress import progress
 from penink_cli.options.sheet import check_sheet
 from penink_cli.options.textures import find_texture, texture_option

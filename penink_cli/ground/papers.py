@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from penink_cli.ground.errors import ParameterError, in_quotes
-from penink_cli.ground.units import parse_length
+from penink_cli.ground.units import MM, parse_length
 
-MM = 72 / 25.4
 PAPERS = {
     **{f"a{n}": (w * MM, h * MM) for n, (w, h) in enumerate(
         [(841, 1189), (594, 841), (420, 594), (297, 420), (210, 297), (148, 210), (105, 148)])},

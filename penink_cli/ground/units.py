@@ -7,7 +7,9 @@ import re
 
 from penink_cli.ground.errors import ParameterError, in_quotes
 
-POINTS = {"": 1.0, "pt": 1.0, "mm": 72 / 25.4, "cm": 720 / 25.4, "in": 72.0}
+#: Points in a millimetre, and millimetres in a point.
+MM, POINT_MM = 72 / 25.4, 25.4 / 72
+POINTS = {"": 1.0, "pt": 1.0, "mm": MM, "cm": 720 / 25.4, "in": 72.0}
 
 _LENGTH = re.compile(r"([0-9]+(?:\.[0-9]*)?|\.[0-9]+)(pt|mm|cm|in|px|)", re.ASCII)
 

@@ -9,6 +9,7 @@ textures      a texture by its name or file
 styles        a style by its name or file
 inks          named inks and lists of inks; plates: all plates in one call
 layers        strokes files as layers; paper, colour, order, pens
+colours       a colour by its code or name
 composition   how a photo is composed: what compose and draw share
 sheet         sizes on paper that are too large, or most likely a mistake
 progress      a bar on a terminal

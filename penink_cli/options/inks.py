@@ -10,8 +10,8 @@ import click
 
 from penink_cli.ground.codes import Colour, code_of
 from penink_cli.ground.errors import in_quotes
+from penink_cli.options.colours import COLOUR
 from penink_cli.options.common import Finite, is_given
-from penink_cli.options.layers import COLOUR
 
 if TYPE_CHECKING:
     from penink_cli.ground.model import GreyImage

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -13,6 +12,8 @@ import click
 from penink_cli.ground.errors import ParameterError, in_quotes
 from penink_cli.ground.papers import paper_size
 from penink_cli.ground.streams import reading, source_name
+from penink_cli.ground.units import POINT_MM
+from penink_cli.options.colours import COLOUR
 from penink_cli.options.common import LENGTH, DeviceDpi, Finite, Length
 
 if TYPE_CHECKING:  # numpy and what needs it are imported when there is work, not for a help text
@@ -20,32 +21,6 @@ if TYPE_CHECKING:  # numpy and what needs it are imported when there is work, no
     from penink_cli.travel.clock import Plotter
 
 F = TypeVar("F", bound=Callable[..., Any])
-
-NAMED = {"black": "000000", "white": "ffffff", "grey": "808080", "gray": "808080", "red": "ff0000", "green": "008000",
-         "blue": "0000ff", "cyan": "00ffff", "magenta": "ff00ff", "yellow": "ffff00", "brown": "a52a2a",
-         "sepia": "704214", "navy": "000080", "maroon": "800000", "orange": "ffa500", "purple": "800080"}  # fmt: skip
-
-
-class Colour(click.ParamType):
-    """``#rrggbb``, ``#rgb`` or a name, as red, green and blue from 0 to 1."""
-
-    name = "colour"
-
-    def convert(
-        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
-    ) -> tuple[float, float, float]:
-        """(red, green, blue)."""
-        if isinstance(value, tuple):
-            return value
-        code = NAMED.get(value.lower(), value.lower().removeprefix("#"))
-        if re.fullmatch("[0-9a-f]{3}", code):
-            code = "".join(c + c for c in code)
-        if not re.fullmatch("[0-9a-f]{6}", code):
-            self.fail(f"{in_quotes(value)} is not #rrggbb or one of {', '.join(NAMED)}", param, ctx)
-        from penink_cli.ground.codes import of_code
-
-        return of_code(f"#{code}")
-
 
 class PaperName(click.ParamType):
     """The name of a paper, or its size."""
@@ -59,9 +34,6 @@ class PaperName(click.ParamType):
         except ParameterError as error:
             self.fail(error.message, param, ctx)
         return str(value)
-
-
-COLOUR = Colour()
 
 
 class Place(click.ParamType):
@@ -198,11 +170,14 @@ def plotter_of(
 
     speed, travel_speed: points a second with the pen down and up. accel: points a second, each second. lift: seconds.
     """
-    from penink_cli.travel.clock import MM, Motion, Plotter
+    from penink_cli.travel.clock import Motion, Plotter
 
     usual = Plotter()
-    down = Motion(speed * MM if speed else usual.down.speed, accel * MM if accel else usual.down.acceleration)
-    up = Motion(travel_speed * MM if travel_speed else usual.up.speed, 2 * down.acceleration, usual.up.corner)
+    down = Motion(
+        speed * POINT_MM if speed else usual.down.speed,
+        accel * POINT_MM if accel else usual.down.acceleration,
+    )
+    up = Motion(travel_speed * POINT_MM if travel_speed else usual.up.speed, 2 * down.acceleration, usual.up.corner)
     return Plotter(down, up, usual.lift if lift is None else lift)
 
 
@@ -269,9 +244,8 @@ def travel_report(before: Sequence[Strokes], after: Sequence[Strokes], seconds: 
     """
     from penink_cli.travel.order import drawn_length, travel_length
 
-    mm = 25.4 / 72
-    drawn = math.fsum(map(drawn_length, after)) * mm
-    was, travelled = (math.fsum(map(travel_length, layers)) * mm for layers in (before, after))
+    drawn = math.fsum(map(drawn_length, after)) * POINT_MM
+    was, travelled = (math.fsum(map(travel_length, layers)) * POINT_MM for layers in (before, after))
     count = sum(map(len, after))
     line = f"{count} strokes: {drawn / 1000:.2f} m drawn, {travelled / 1000:.2f} m travelled with the pen up"
     if before is not after:

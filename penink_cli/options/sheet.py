@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from penink_cli.ground.errors import LimitError, ParameterError
-from penink_cli.ground.papers import MM
+from penink_cli.ground.units import MM
 from penink_cli.options.common import is_given, warn
 
 PIXELS_PER_PT = 2.0  # of the grey that a sheet is blasted from, along each axis

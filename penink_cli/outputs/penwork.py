@@ -11,6 +11,7 @@ from penink_cli.formats.pens import Pen
 from penink_cli.ground.codes import of_code
 from penink_cli.ground.colour import lab_of_light, linear
 from penink_cli.ground.model import Strokes
+from penink_cli.ground.units import POINT_MM
 from penink_cli.travel import clock
 
 #: An AxiDraw's top speed, mm/s, and the number that stands for it in a layer's name.
@@ -40,7 +41,7 @@ class Load:
             name = f"{name or 'pen'} {self.part[0]}/{self.part[1]}"
         speed = ""
         if self.pen is not None and self.pen.speed is not None:
-            parts = round(self.pen.speed * clock.MM / TOP_SPEED * SPEED_PARTS)
+            parts = round(self.pen.speed * POINT_MM / TOP_SPEED * SPEED_PARTS)
             speed = f"+S{min(max(parts, 1), SPEED_PARTS)}"
         return "!" * self.waits + str(number) + speed + (f" {name}" if name else "")
 

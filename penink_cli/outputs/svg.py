@@ -15,10 +15,10 @@ from penink_cli.formats.strokes import Sink
 from penink_cli.ground.codes import code_of
 from penink_cli.ground.decimals import plain
 from penink_cli.ground.model import Floats, Ints, Strokes
+from penink_cli.ground.units import POINT_MM
 from penink_cli.outputs import inks, swelling, words
 from penink_cli.outputs.page import Page
 
-MM = 25.4 / 72
 DECIMALS = 3  # micrometres
 OUTLINE_DECIMALS = 2  # of a millimetre: outlines are off by an eighth of a dot of 600 dpi at the most
 BATCH = 20000  # strokes that are turned into text at a time
@@ -39,7 +39,7 @@ def write(
     """
     colours = [colours[i] if i < len(colours) else inks.BLACK for i in range(len(layers))]
     blend = ' style="mix-blend-mode:multiply"' if inks.overprint(colours) else ""
-    width, height = plain(page.width * MM, DECIMALS), plain(page.height * MM, DECIMALS)
+    width, height = plain(page.width * POINT_MM, DECIMALS), plain(page.height * POINT_MM, DECIMALS)
     out.write(
         '<?xml version="1.0" encoding="UTF-8"?>\n'
         '<svg xmlns="http://www.w3.org/2000/svg" xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape"\n'
@@ -55,7 +55,7 @@ def write(
         pen = float(pens[np.argmax(counts)]) if len(pens) else 1.0
         out.write(
             f'<g id="layer{i + 1}" inkscape:groupmode="layer" inkscape:label={quoteattr(label)}\n'
-            f'   fill="none" stroke="{colour}" stroke-width="{plain(pen * MM, 4)}" '
+            f'   fill="none" stroke="{colour}" stroke-width="{plain(pen * POINT_MM, 4)}" '
             f'stroke-linecap="round" stroke-linejoin="round"{blend}>\n'.encode()
         )
         batch = max(1, len(layer)) if merge else BATCH
@@ -81,7 +81,7 @@ def _paths(layer: Strokes, start: int, stop: int, page: Page, usual: float, merg
     numbers = _relative(layer.points[layer.first[start] : layer.first[stop]], first, page)
     pens, pen = np.unique(layer.widths[start:stop], return_inverse=True)
     begin = b'<path d="M'
-    ends = [b"" if p == usual else b' stroke-width="%s"' % plain(p * MM, 4).encode() for p in pens.tolist()]
+    ends = [b"" if p == usual else b' stroke-width="%s"' % plain(p * POINT_MM, 4).encode() for p in pens.tolist()]
     # A dot is a line of a micrometre: some programs do not draw a line without length, and vpype drops it.
     lines = [b'"%s/>\n%s' % (end, begin) for end in ends]
     table = [b" ", b"c", begin, *lines, *(b"h.001" + line for line in lines)]
@@ -110,7 +110,7 @@ def _outlines(strokes: Strokes, page: Page) -> memoryview:
 
 def _relative(points: Floats, first: Ints, page: Page, decimals: int = DECIMALS) -> Ints:
     """Points (p, 2) of chains on the page in whole 10^-decimals mm, those of a segment relative to where it begins."""
-    grid = words.whole((points + np.array((page.x, page.y))) * (MM * 10**decimals))
+    grid = words.whole((points + np.array((page.x, page.y))) * (POINT_MM * 10**decimals))
     inner = np.arange(len(grid)) - np.repeat(first[:-1], np.diff(first))
     origin = np.arange(len(grid)) - np.where(inner > 0, (inner - 1) % 3 + 1, 0)
     return np.where((inner > 0)[:, None], grid - grid[origin], grid)

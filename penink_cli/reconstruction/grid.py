@@ -135,12 +135,12 @@ def choose_grid(
     height, width = samples.shape
     seen = samples if photo is None else photo
     shown = 0.0 if seen_at is None else SEEN_PT * seen.shape[1] / seen_at
-    exact = _View(seen, 0.0, POINT, shown)
+    full = _View(seen, 0.0, POINT, shown)
     if photo is not None:
-        exact = _View(seen, camera_blur(seen, edges), AREA, shown)
+        full = _View(seen, camera_blur(seen, edges), AREA, shown)
     enough = math.ceil(seen.size / max(1.0, shown / SEEN_PX) ** 2)
-    quick = exact.smaller(min(VIEW_PX, enough if 2 * enough < seen.size else seen.size))  # else it does not pay
-    judge = exact if seen_at is None else exact.smaller(math.ceil(seen.size / max(1.0, shown / SURE_PX) ** 2))
+    quick = full.smaller(min(VIEW_PX, enough if 2 * enough < seen.size else seen.size))  # else it does not pay
+    judge = full if seen_at is None else full.smaller(math.ceil(seen.size / max(1.0, shown / SURE_PX) ** 2))
     if max_error is None:
         max_error = MAX_ERROR if seen_at is None else MAX_SEEN_ERROR
     if relative and seen_at is not None:
@@ -159,12 +159,12 @@ def choose_grid(
 
     def attempt(side: int, view: _View) -> Grid:
         """The grid fitted to a view of the photo."""
-        by = judge if view is exact else view
+        by = judge if view is full else view
         if size(side)[0] > by.picture.shape[1] or size(side)[1] > by.picture.shape[0]:
-            view = by = exact  # a grid finer than what judges it could not be fitted
-        key = side, view is exact
+            view = by = full  # a grid finer than what judges it could not be fitted
+        key = side, view is full
         if key not in tried:
-            reduced = reduction.to(*size(side), photo if view is exact else view.picture, view.blur)
+            reduced = reduction.to(*size(side), photo if view is full else view.picture, view.blur)
             error = remaining_error(reduced, edges, by.picture, by.blur, by.fine, threads, by.to_blur())
             tried[key] = Grid(reduced, error, regions.without_sample(*size(side)))
             report(
@@ -184,13 +184,13 @@ def choose_grid(
             side += 1
         return side
 
-    side = serving(search(max_error if quick is exact else max_error / _FLATTERED))
-    chosen = attempt(side, exact)
+    side = serving(search(max_error if quick is full else max_error / _FLATTERED))
+    chosen = attempt(side, full)
     while chosen.error > max_error and side < long:
         # the photo's noise, most of which a smaller view does not have, leaves that much less to the grid
         unseen = max(0.0, chosen.error**2 - attempt(side, quick).error ** 2)
         side = serving(search(math.sqrt(max(0.0, max_error**2 - unseen)), side + 1))
-        chosen = attempt(side, exact)
+        chosen = attempt(side, full)
     if chosen.error > max_error:
         raise ParameterError(
             f"even {width} x {height} samples leave an error of {255 * chosen.error:.2f} of 255; "

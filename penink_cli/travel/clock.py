@@ -19,8 +19,8 @@ import numpy as np
 
 from penink_cli.ground import exact
 from penink_cli.ground.model import Floats, Ints, Strokes
+from penink_cli.ground.units import POINT_MM
 
-MM = 25.4 / 72
 STILL = 1e-6  # points: a shorter leg is left out
 FLAT_MM = 0.02  # how far the chords by which a curve is drawn may be from it
 
@@ -61,10 +61,10 @@ def seconds_by_speeds(
         if not len(layer):
             continue
         place = np.array((x, y))
-        starts, ends = ((layer.points[i] + place) * MM for i in (layer.first[:-1], layer.first[1:] - 1))
+        starts, ends = ((layer.points[i] + place) * POINT_MM for i in (layer.first[:-1], layer.first[1:] - 1))
         ways = starts - np.concatenate([at, ends[:-1]])
         total += _added(from_rest(exact.length(ways), plotter.up)) + 2 * plotter.lift * len(layer)
-        down = plotter.down if speed is None else replace(plotter.down, speed=speed * MM)
+        down = plotter.down if speed is None else replace(plotter.down, speed=speed * POINT_MM)
         total += _added(drawn_seconds(layer, down))
         at = ends[-1:]
     return total + _added(from_rest(exact.length(at), plotter.up))
@@ -84,7 +84,7 @@ def from_rest(length: Floats, motion: Motion) -> Floats:
 def drawn_seconds(strokes: Strokes, motion: Motion) -> Floats:
     """Seconds (s,) for each stroke from rest to rest, its curves drawn as chords."""
     points, first = chords(strokes)
-    points = points * MM
+    points = points * POINT_MM
     count = np.diff(first)
     order = np.argsort(-count, kind="stable")  # most chords first: strokes that have a k-th chord stand together
     begins, count = first[:-1][order], count[order]
@@ -142,7 +142,7 @@ def chords(strokes: Strokes) -> tuple[Floats, Ints]:
         exact.length(control[:, 0] - 2 * control[:, 1] + control[:, 2]),
         exact.length(control[:, 1] - 2 * control[:, 2] + control[:, 3]),
     )
-    pieces = np.maximum(np.ceil(np.sqrt(second * (6 * MM / (8 * FLAT_MM)))), 1).astype(np.int64)
+    pieces = np.maximum(np.ceil(np.sqrt(second * (6 * POINT_MM / (8 * FLAT_MM)))), 1).astype(np.int64)
     which = np.repeat(np.arange(len(pieces)), pieces)
     t = ((np.arange(len(which)) - np.repeat(np.cumsum(pieces) - pieces, pieces) + 1) / pieces[which])[:, None]
     p = control[which]

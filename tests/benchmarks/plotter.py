@@ -18,6 +18,7 @@ import numpy as np
 
 from penink_cli.blasting.blast import blast
 from penink_cli.ground.model import Directions, Strokes
+from penink_cli.ground.units import POINT_MM
 from penink_cli.options.textures import find_texture
 from penink_cli.outputs import svg
 from penink_cli.outputs.page import Page
@@ -54,7 +55,7 @@ def by_saxi(folder: str, strokes: Strokes) -> float:
     t = np.arange(1, 17)[:, None] / 16
     paths = []
     for i in range(len(strokes)):
-        p = strokes[i] * clock.MM
+        p = strokes[i] * POINT_MM
         line = [p[:1]]
         for a, b, c, d in (p[k : k + 4] for k in range(0, len(p) - 1, 3)):
             line.append((1 - t) ** 3 * a + 3 * t * (1 - t) ** 2 * b + 3 * t * t * (1 - t) * c + t**3 * d)
