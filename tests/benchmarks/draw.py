@@ -1,10 +1,14 @@
 """Where `draw` spends its processor time, filter by filter.
 
-Run as ``python -m tests.benchmarks.draw [stages] [watch] [against CHECKOUT] [half|two|twelve …] [true|house …]``. A
-portrait with a camera's grain, as a JPEG of half a megapixel, two and twelve, is drawn 6 in wide. Times are of the
+Run as ``python -m tests.benchmarks.draw [stages] [watch] [canny] [against CHECKOUT] [half|two|twelve …]
+[true|house …]``.
+A portrait with a camera's grain, as a JPEG of half a megapixel, two and twelve, is drawn 6 in wide. Times are of the
 processor, all threads together; Canny's detector of scikit-image (sigma 2) on the same photograph in the same run is
 the unit beside them. The processor's time of each filter is told for one thread, for with more threads filters run at
 the same time; for more threads it is told when each filter began and ended on the wall.
+
+`canny`: twelve megapixels by all threads, on the wall from the process's start, and Canny's detector, in turn: medians
+and their ratio, which is to be at most 2.5.
 
 `watch`: seconds from the saving of a style, or of the user's strokes, until ``draw --watch`` has drawn again: on the
 wall, which tells something on a quiet machine alone, and of the processor.
@@ -148,6 +152,24 @@ def _figure(took, name):
     return took[name] if name in took else took["spent"].get(name, 0.0)
 
 
+def beside_canny(folder, drawings, turns=7):
+    """How long whole drawings of twelve megapixels take beside Canny's detector."""
+    photo = folder / "twelve.jpg"
+    portrait(photo, SIZES["twelve"])
+    drawings = [drawing for drawing in drawings if drawing[1] == ".ps"]
+    units, walls = [], {style: [] for style, _ in drawings}
+    for _ in range(turns):
+        units.append(canny(photo))
+        for style, ending in drawings:
+            took, _ = drawn(photo, folder / f"d{ending}", "--style", style, "--width", "6in")
+            walls[style].append(took["wall"] + took["spent"]["start"])
+    unit = statistics.median(units)
+    print(f"  canny: {unit:.2f} s ({min(units):.2f} to {max(units):.2f})")
+    for style, each in walls.items():
+        wall = statistics.median(each)
+        print(f"  {style}: {wall:.2f} s on the wall ({min(each):.2f} to {max(each):.2f}), {wall / unit:.2f} x canny")
+
+
 SAVED = {  # what is saved, after the drawing in crosshatch
     "texture": (("form", 0.3), 3),
     "pen": (("form", 0.4), 3),
@@ -218,7 +240,9 @@ def main():
         drawings = [drawing for drawing in DRAWINGS if drawing[0] in told] or DRAWINGS
         if older is not None:
             against(Path(name), sizes, drawings, older)
-        if not {"watch", "against"}.intersection(told) or "stages" in told:
+        if "canny" in told or not told:
+            beside_canny(Path(name), drawings)
+        if not {"watch", "against", "canny"}.intersection(told) or "stages" in told:
             stages(Path(name), sizes, drawings)
         if "watch" in told or not told:
             watch(Path(name))
