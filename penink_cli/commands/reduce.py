@@ -30,7 +30,7 @@ from penink_cli.options.photographs import photo_limit, photo_options, read_phot
     "--max-error",
     type=Finite(above=0, most=255),
     metavar="E",
-    help="RMS difference from the photo, grey levels of 255.  [default: 8, with --seen-at 4.5]",
+    help="RMS difference from the photo, grey levels of 255.  [default: 8, with --seen-at 4.3]",
 )
 @click.option(
     "--seen-at",

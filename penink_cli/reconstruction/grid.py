@@ -42,7 +42,7 @@ from penink_cli.reconstruction.shrinking import shrunk
 Grey32 = npt.NDArray[np.float32]
 
 MAX_ERROR = 8 / 255
-MAX_SEEN_ERROR = 4.5 / 255  # of what a drawing at a size shows
+MAX_SEEN_ERROR = 4.3 / 255  # of what a drawing at a size shows
 #: A photo's detail is what a drawing shows of it, less its means over _AROUND times what a drawing blurs. Where detail
 #: is fainter than FAINT (RMS), less error is allowed in proportion: in a faint photo the same error hides more.
 FAINT, _AROUND = 28 / 255, 8
