@@ -7,7 +7,7 @@ from typing import Any
 import click
 
 from penink_cli.ground.streams import writing
-from penink_cli.options.common import LENGTH, Finite, Point, filter_options, is_given, printer_option
+from penink_cli.options.common import LENGTH, POINT, Finite, filter_options, is_given, printer_option
 from penink_cli.options.inputs import read_edges
 
 
@@ -34,7 +34,7 @@ from penink_cli.options.inputs import read_edges
 @click.option(
     "--region",
     "regions",
-    type=Point(),
+    type=POINT,
     multiple=True,
     help="Only edges around the region that holds this point, in pixels of the photo; may be repeated.",
 )

@@ -8,7 +8,7 @@ import click
 
 from penink_cli.ground.errors import in_quotes
 from penink_cli.ground.streams import writing
-from penink_cli.options.common import Point, edges_option, filter_options, plain_number
+from penink_cli.options.common import POINT, edges_option, filter_options, plain_number
 from penink_cli.options.inks import CMYK, Inks, inks_options, inverted, refuse_without_plate, separated
 from penink_cli.options.inputs import only_one_standard_input, read_edges, warn_of_another_shape
 from penink_cli.options.photographs import photo_options, read_photo
@@ -43,7 +43,7 @@ class Range(click.ParamType):
 @click.option(
     "--point",
     "points",
-    type=Point(),
+    type=POINT,
     multiple=True,
     help="The region of the edge list that holds this point, in pixels of the photo; may be repeated.",
 )

@@ -7,8 +7,8 @@ import click
 from penink_cli.ground.streams import writing
 from penink_cli.options.common import (
     LENGTH,
+    POINT,
     Finite,
-    Point,
     filter_options,
     is_given,
     reporter,
@@ -48,7 +48,7 @@ from penink_cli.options.photographs import photo_options, read_photo
 @click.option(
     "--keep-region",
     "regions",
-    type=Point(),
+    type=POINT,
     multiple=True,
     help="Keep edges around the region that holds this point, in pixels of the photo; may be repeated.",
 )

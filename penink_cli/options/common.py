@@ -108,10 +108,13 @@ class Finite(click.ParamType):
         return number
 
 
-class Point(click.ParamType):
-    """``X,Y`` in pixels of the photo."""
+class Pair(click.ParamType):
+    """``X,Y``, each of a type of its own; such_as: what it is, with an example, for the error."""
 
     name = "X,Y"
+
+    def __init__(self, each: click.ParamType, such_as: str):
+        self.each, self.such_as = each, such_as
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> tuple[float, float]:
         """(x, y)."""
@@ -119,9 +122,13 @@ class Point(click.ParamType):
             return value
         parts = value.split(",")
         if len(parts) != 2:
-            self.fail(f"{in_quotes(value)} is not a point such as 120,85.5", param, ctx)
-        x, y = (Finite().convert(part, param, ctx) for part in parts)
+            self.fail(f"{in_quotes(value)} is not {self.such_as}", param, ctx)
+        x, y = (self.each.convert(part, param, ctx) for part in parts)
         return x, y
+
+
+#: A place in the photo, pixels.
+POINT = Pair(Finite(), "a point such as 120,85.5")
 
 
 class DeviceDpi(click.ParamType):

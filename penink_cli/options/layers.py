@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from penink_cli.ground.errors import ParameterError, in_quotes
+from penink_cli.ground.errors import ParameterError
 from penink_cli.ground.papers import paper_size
 from penink_cli.ground.streams import reading, source_name
 from penink_cli.ground.units import POINT_MM
 from penink_cli.options.colours import COLOUR
-from penink_cli.options.common import LENGTH, DeviceDpi, Finite, Length
+from penink_cli.options.common import LENGTH, DeviceDpi, Finite, Length, Pair
 
 if TYPE_CHECKING:  # numpy and what needs it are imported when there is work, not for a help text
     from penink_cli.ground.model import Strokes
@@ -36,22 +36,8 @@ class PaperName(click.ParamType):
         return str(value)
 
 
-class Place(click.ParamType):
-    """``X,Y``, two lengths."""
-
-    name = "X,Y"
-
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> tuple[float, float]:
-        """x and y, points."""
-        if isinstance(value, tuple):
-            return value
-        parts = value.split(",")
-        if len(parts) != 2:
-            self.fail(f"{in_quotes(value)} is not a place such as 20mm,35mm", param, ctx)
-        x, y = (Length(zero=True).convert(part, param, ctx) for part in parts)
-        return x, y
-
-
+#: A place on the paper, points.
+PLACE = Pair(Length(zero=True), "a place such as 20mm,35mm")
 files_argument = click.argument("files", nargs=-1, metavar="[FILE]...", type=click.Path(allow_dash=True))
 
 
@@ -60,7 +46,7 @@ def page_options(function: F) -> F:
     for decorate in (
         click.option(
             "--at",
-            type=Place(),
+            type=PLACE,
             metavar="X,Y",
             help="Put the picture's top-left corner there on the page: 20mm,35mm.  [default: in the middle]",
         ),

@@ -18,6 +18,19 @@ cdef unsigned long long NONE = 0
 cdef unsigned long long ALL = 0x0101010101010101
 
 
+cdef enum:
+    LEFT, TOP, RIGHT, BOTTOM
+
+# From which side of a square to which a line runs, and in two of them a second one, by which of its pixels exceed the
+# level: 1 and 2 the upper ones, 4 and 8 those below.
+cdef int[16][4] JOINS = [
+    [0, 0, 0, 0], [TOP, LEFT, 0, 0], [RIGHT, TOP, 0, 0], [RIGHT, LEFT, 0, 0],
+    [LEFT, BOTTOM, 0, 0], [TOP, BOTTOM, 0, 0], [RIGHT, TOP, LEFT, BOTTOM], [RIGHT, BOTTOM, 0, 0],
+    [BOTTOM, RIGHT, 0, 0], [TOP, LEFT, BOTTOM, RIGHT], [BOTTOM, TOP, 0, 0], [BOTTOM, LEFT, 0, 0],
+    [LEFT, RIGHT, 0, 0], [TOP, RIGHT, 0, 0], [LEFT, TOP, 0, 0], [0, 0, 0, 0],
+]
+
+
 cdef inline bint plain(const unsigned char* upper, const unsigned char* lower) noexcept nogil:
     """Whether eight pixels of two rows are all of one kind."""
     cdef unsigned long long a, b
@@ -37,7 +50,8 @@ def cross(
     (n,) the crossings at which lines begin, in the order of their squares.
     """
     cdef Py_ssize_t h = image.shape[0], w = image.shape[1], i, j
-    cdef int count = 0, lines = 0, left, right, top, bottom, kind
+    cdef int count = 0, lines = 0, left, right, top, bottom, kind, k
+    cdef int[4] ends
     cdef const unsigned char* upper
     cdef const unsigned char* lower
     with nogil:
@@ -66,34 +80,11 @@ def cross(
                     places[count, 0] = i + part(image[i, j + 1], image[i + 1, j + 1], level)
                     places[count, 1] = j + 1
                     count += 1
-                if kind == 1 or kind == 9:
-                    join(top, left, following, begins, &lines)
-                elif kind == 2 or kind == 6:
-                    join(right, top, following, begins, &lines)
-                elif kind == 3:
-                    join(right, left, following, begins, &lines)
-                elif kind == 4:
-                    join(left, bottom, following, begins, &lines)
-                elif kind == 5:
-                    join(top, bottom, following, begins, &lines)
-                elif kind == 7:
-                    join(right, bottom, following, begins, &lines)
-                elif kind == 8:
-                    join(bottom, right, following, begins, &lines)
-                elif kind == 10:
-                    join(bottom, top, following, begins, &lines)
-                elif kind == 11:
-                    join(bottom, left, following, begins, &lines)
-                elif kind == 12:
-                    join(left, right, following, begins, &lines)
-                elif kind == 13:
-                    join(top, right, following, begins, &lines)
-                else:
-                    join(left, top, following, begins, &lines)
-                if kind == 6:
-                    join(left, bottom, following, begins, &lines)
-                elif kind == 9:
-                    join(bottom, right, following, begins, &lines)
+                ends[LEFT], ends[TOP], ends[RIGHT], ends[BOTTOM] = left, top, right, bottom
+                for k in range(0, 4 if kind == 6 or kind == 9 else 2, 2):
+                    following[ends[JOINS[kind][k]]] = ends[JOINS[kind][k + 1]]
+                    begins[lines] = ends[JOINS[kind][k]]
+                    lines += 1
                 left = right
                 j += 1
     return lines
@@ -102,12 +93,6 @@ def cross(
 cdef inline double part(float a, float b, double level) noexcept nogil:
     """How far from a to b the level is."""
     return (level - <double>a) / (<double>b - <double>a)
-
-
-cdef inline void join(int a, int b, int[::1] following, int[::1] begins, int* lines) noexcept nogil:
-    following[a] = b
-    begins[lines[0]] = a
-    lines[0] += 1
 
 
 def follow(
